@@ -11,18 +11,14 @@ from assets.lake import Folders, incremental
 from assets.report import write_report
 from assets.workers import map_in_parallel
 from warehouse.derive import database as duck
-from warehouse.store.code import COMPUTING, code_hash
+from warehouse.store.code import code_hash
 
 SHOWING: Final = ("dashboards", "pipeline", "warehouse")
 """Packages with which pages are made; their words count too."""
 
 
 @dg.asset(deps=duck.IN_DATABASE)
-@incremental(
-    code=(*COMPUTING, "warehouse.store.package"),
-    also=duck.describe_contents(),
-    is_whole=duck.is_whole,
-)
+@incremental(also=duck.describe_contents(), is_whole=duck.is_whole)
 def warehouse_database(folders: Folders, about_archive: pl.DataFrame) -> pl.DataFrame:
     """All tables in one DuckDB file, swapped in whole, with the meaning of each column."""
     tables = {name: folders.store.read(name) for name in duck.IN_DATABASE}

@@ -5,6 +5,7 @@ import polars as pl
 
 from assets.lake import Folders, incremental, outs
 from assets.rules import read_methods
+from pipeline.register import years
 from warehouse.derive import registers as derive
 
 
@@ -21,6 +22,9 @@ def registers(
     boats: pl.DataFrame,
     listed_boats: pl.DataFrame,
     listed_races: pl.DataFrame,
+    listed_tows: pl.DataFrame,
+    printed_registers: pl.DataFrame,
+    log_factors: pl.DataFrame,
     decisions: pl.DataFrame,
     correction_steps: pl.DataFrame,
     published_register: pl.DataFrame,
@@ -41,6 +45,9 @@ def registers(
         boats=boats,
         listed_boats=listed_boats,
         listed_races=listed_races,
+        listed_tows=listed_tows,
+        printed_registers=printed_registers,
+        log_factors=log_factors,
         decisions=decisions,
         published=published,
         correction_steps=correction_steps,
@@ -55,3 +62,22 @@ def race_changes(
 ) -> pl.DataFrame:
     """All races in the archive under both editions of every pair that is compared."""
     return derive.race_changes(register_changes, register_history, listed_races)
+
+
+@dg.multi_asset(outs=outs("register_years", "year_winners"), can_subset=True)
+@incremental(may_fail=True)
+def registers_of_years(
+    folders: Folders,
+    methods: pl.DataFrame,
+    register_history: pl.DataFrame,
+    correction_steps: pl.DataFrame,
+    tows: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    ensemble: pl.DataFrame,
+) -> dict[str, pl.DataFrame]:
+    """The register of every past year as it was published and under each method; and its races."""
+    applied = read_methods(folders, methods)
+    seasons = tows["season"].unique().sort().to_list()
+    lines = years.register_years(register_history, correction_steps, applied, seasons)
+    winners = years.year_winners(register_history, listed_races, ensemble, applied)
+    return {"register_years": lines, "year_winners": winners}

@@ -1,6 +1,7 @@
 """`beheer.toml`: when to rebuild, whom to mail and who helps, written by whoever runs it.
 
-It lies in the data folder and may be left out. No setting in it can change a number.
+It lies in the data folder and may be left out. No setting in it can change a number of the
+register; which differences between boats matter decides verdicts on types.
 """
 
 from collections.abc import Sequence
@@ -9,6 +10,7 @@ from typing import Final
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from pipeline.consistency.types import DIFFERENCES_THAT_MATTER
 from warehouse.store.methods import methods_to_apply
 from warehouse.store.settings_file import read_settings_file
 from warehouse.store.store import Store
@@ -31,6 +33,8 @@ class Settings(BaseModel):
             takes precedence.
         set_aside_share: more of the tows set aside gives a warning.
         factor_jump: a log factor that moves more gives a warning; a ratio minus 1.
+        difference_cw, difference_a, difference_b: spread between boats of a type, as a ratio, from
+            which they are not equal; 3 % of Cw is a minute in a race of two hours.
         issuer: the federation, by whom certificates are issued.
         site: where the site is for others, `https://...`; the QR code of certificates leads there.
         dask: scheduler of the Dask cluster that reads the seasons: `tcp://host:8786`; without it
@@ -50,6 +54,9 @@ class Settings(BaseModel):
     smtp_password_file: Path | None = None
     set_aside_share: float = Field(default=0.1, ge=0, le=1)
     factor_jump: float = Field(default=0.01, gt=0)
+    difference_cw: float = Field(default=DIFFERENCES_THAT_MATTER["cw_standard_kg_m"], gt=0, lt=1)
+    difference_a: float = Field(default=DIFFERENCES_THAT_MATTER["a_kg_m"], gt=0, lt=1)
+    difference_b: float = Field(default=DIFFERENCES_THAT_MATTER["b_m_s"], gt=0, lt=1)
     issuer: str = ""
     site: str = Field(default="", pattern=r"^(https?://\S+)?$")
     dask: str | None = Field(default=None, pattern=r"^(tcp|tls)://")

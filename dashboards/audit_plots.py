@@ -83,7 +83,6 @@ def _of_types(views: Views, report: TypesAudit) -> Iterator[Plot]:
     compared = pl.col("method").is_in([methods[0], default_method(methods)])
     for name in SCATTERS:
         yield Plot(name, boats.filter(compared))
-    yield Plot("predicted", views.ask("predicted").filter(own, method=default_method(methods)))
 
 
 def _of_boat(views: Views, report: BoatAudit) -> Iterator[Plot]:

@@ -29,6 +29,7 @@ CODES: Final = {
     *("old_remark", "new_remark", "choice", "pooling"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
     *("instrument", "verdict", "confused_with", "rule"),
+    *("rest_verdict", "weight_verdict", "tow_speed_verdict"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 

@@ -10,6 +10,7 @@ from typing import Final
 
 from pipeline.assessment.checks import CHECKS
 from pipeline.messages import Sentence, pgettext, say, tell
+from pipeline.register.words import CAUSES, STEPS, name_cause
 from pipeline.tables.row import Row
 
 _PLAIN_COLUMNS: Final = (
@@ -111,17 +112,38 @@ COLUMNS: Final[dict[str, Sentence]] = {
     "n_pairs": say("Pairs"),
     "slope_lo": say("low"),
     "slope_hi": say("high"),
-    "p_value": say("p"),
-    "power_at_10pct": say("Chance to see 10 %"),
-    "noise_share": say("Share of noise"),
     "deviation_sd": say("Deviation [sd]"),
+    "cw_expected_kg_m": say("Cw expected [kg/m]"),
+    "cw_deviation_sd": say("Cw off [sd]"),
+    "cw_outside": say("Stands out in Cw"),
+    "b_expected_m_s": say("B expected [m/s]"),
+    "b_deviation_sd": say("B off [sd]"),
+    "b_outside": say("Stands out in B"),
+    "difference_that_matters": say("What matters"),
+    "spread_ratio": say("Boats differ by"),
+    "spread_lo": say("at least"),
+    "spread_hi": say("at most"),
+    "error_ratio": say("Measuring error"),
+    "repeat_pairs": say("Pairs of repeat tows"),
+    "noise_ratio": say("Error by repeats / by runs"),
+    "zero_sd_n": say("Added by repeats [N]"),
+    "season_sd": say("Shared by a season"),
+    "rest_verdict": say("Without those that stand out"),
+    "farthest": say("Farthest boat"),
+    "farthest_ratio": say("Farthest / expected"),
+    "weight_verdict": say("On weight"),
+    "tow_speed_verdict": say("On tow speed"),
+    "races": say("Races until the next tow"),
+    "raced_beyond_curve": say("Raced beyond the curve"),
+    "raced_power_w": say("Power when raced [W/\u200brower]"),
+    "raced_high": say("Much power when raced"),
+    "power_ratio_raced": say("Power / with the bend of its type"),
     "candidates": say("Possible cause"),
     "scope": say("Group"),
     "sd_ratio": say("sd / Cw"),
     "share_within_1pct": say("Share within 1 %"),
     "share_within_2pct": say("Share within 2 %"),
     "component": say("Cause"),
-    "share": say("Share of variance"),
     "predicted_cw_kg_m": say("Predicted [kg/m]"),
     "shared": say("Shared by"),
     "u_ratio": say("Uncertainty"),
@@ -183,25 +205,27 @@ COLUMNS: Final[dict[str, Sentence]] = {
     "cw_effect_ratio": say("Cw new / old"),
     "ln_ratio": say("Cw new / old"),
     "power_ratio": say("Power new / old"),
-    "pooling": say("Bend"),
-    "median_b_m_s": say("Median B [m/s]"),
-    "b_sd_ratio": say("Spread of B"),
-    "most_115": say("Most that Cw moves"),
-    "most_fsn_no": say("Of boat"),
-    "equal_possible": say("Possible"),
     "n_disagree": say("Disagree"),
     "median_factor": say("Median"),
     "lowest_factor": say("Lowest"),
     "highest_factor": say("Highest"),
+    "published_cw_kg_m": say("Cw as pub\u00adlished [kg/m]"),
+    "published_rank": say("Speed rank as pub\u00adlished"),
+    "rank": say("Speed rank"),
+    "published_winner": say("Winner then"),
+    "winner": say("Winner by the method"),
+    "year": say("Year"),
+    "changed": say("Changed lines"),
+    "rank_changed": say("Other speed rank"),
+    "printed_lines": say("Lines in print"),
+    "printed_median_ratio": say("Print: median ratio"),
+    "printed_largest_ratio": say("Print: largest ratio"),
     "winner_changed": say("Another wins"),
     "change_probability": say("Chance that another wins"),
     "old_a_kg_m": say("A old [kg/m]"),
     "new_a_kg_m": say("A new [kg/m]"),
     "old_b_m_s": say("B old [m/s]"),
     "new_b_m_s": say("B new [m/s]"),
-    "n_predicted": say("Predicted"),
-    "rmse_ratio": say("Off by"),
-    "tow_sd_ratio": say("Error of the tow"),
     "median_power_ratio": say("Power new / old"),
     "median_seconds": say("In 2 h [s]"),
 }
@@ -262,10 +286,8 @@ CODES: Final[dict[str, Sentence]] = {
     "list": say("list changed"),
     "warn": say("WARNING"),
     "error": say("ERROR"),
-    "tow": say("another tow counts"),
-    "other_input": say("other tows changed"),
-    "code_or_other_input": say("code or other tows"),
-    "unseparated": say("method and input"),
+    "tow": CAUSES["tow"],
+    **STEPS,
     "editions_can_be_made_again": say("editions are what they were and can be made again"),
     "every_tow_has_a_curve_row": say(
         "every tow has a row among the curves, even one without a curve"
@@ -295,15 +317,12 @@ CODES: Final[dict[str, Sentence]] = {
     "not determined": say("not determined"),
     "not settled": say("not settled"),
     "gps": say("GPS"),
-    "run_point": say("averaging of each run"),
-    "unrecorded": say("what nobody recorded"),
     "boat_season": say("boat in season"),
     "fleet": say("all boats"),
     "within_type": say("within a type"),
     "speed_drift": say("speed drifts"),
     "more_left_out": say("more seconds left out"),
     "not_selected": say("not selected in the list"),
-    "ln_cw_standard": say("Cw at standard speed, as a power"),
     "cw_standard_kg_m": say("Cw at standard speed"),
     "q": say("bend q"),
     "bend": say("bend (v/B)²"),
@@ -313,13 +332,16 @@ CODES: Final[dict[str, Sentence]] = {
     "weight_kg": say("weight"),
     "displacement_kg": say("displacement"),
     "declared_speed_m_s": say("declared speed"),
-    "ln_displacement": say("power of displacement"),
     "few_boats": say("too few boats"),
+    "equal": say("equal"),
+    "differ": say("not equal"),
+    "open": say("cannot be told"),
+    "rises": say("rises"),
+    "falls": say("falls"),
+    "no_b": say("no B: Cw hardly rises"),
     "few_pairs": say("fewer than six pairs"),
-    "too_few_repeats": say("too few repeat tows"),
     "no_scatter": say("runs without scatter"),
     "not_settled": say("the search did not settle"),
-    "reproduction": say("from print to recomputed as published"),
     "lost_seconds": say("seconds"),
     "lost_run": say("run"),
     "lost_tow": pgettext("what is lost", "tow"),
@@ -397,9 +419,7 @@ FIGURES: Final[dict[str, Sentence]] = {
     "cw_standard_weight": say("Cw at the standard speed against weight"),
     "cw_standard_speed": say("Cw at the standard speed against declared speed"),
     "history": say("Through the years"),
-    "shared_bend": say("Could one B serve the type?"),
     "repeats": say("Every pair"),
-    "predicted": say("Predicted without towing"),
     "eras": say("Does an era differ?"),
 }
 """Captions of figures that several pages have, by their names."""
@@ -430,8 +450,14 @@ def candidate(name: str) -> Sentence:
 
 
 def cause(found: Row) -> Sentence:
-    """What a change comes from: a step of the method by its name, or another cause."""
-    return code(found.get("step") or found["cause"])
+    """Return what a change comes from: a step of the method by its name, or another cause.
+
+    Args:
+        found: `cause` and, where it is the method, `step`; small causes together are `rest`.
+    """
+    if found["cause"] == "rest":
+        return code("rest")
+    return name_cause(found["cause"], found.get("step"))
 
 
 def method(name: str) -> Sentence:

@@ -42,18 +42,22 @@ def compute_tables(store: Store, methods: Sequence[Method], today: dt.date) -> N
 
 def make_registers(store: Store, methods: Sequence[Method]) -> None:
     """Make the drafts and their lineage, beside the editions that are published."""
+    published = published_tables(store)
     made = register_tables(
         curves=store.read("curves"),
         tows=store.read("tows"),
         boats=store.read("boats"),
         listed_boats=store.read("listed_boats"),
         listed_races=store.read("listed_races"),
+        listed_tows=store.read("listed_tows"),
+        printed_registers=store.read("printed_registers"),
+        log_factors=store.read("log_factors"),
         decisions=decision_table(read_decisions(store.root / FILE_NAME)),
-        published=published_tables(store),
+        published=published,
         correction_steps=read_earlier(store, "correction_steps"),
         methods=methods,
     )
-    for name, frame in made.items():
+    for name, frame in (made | {"editions": published["editions"]}).items():
         store.write(name, conform(name, frame))
 
 

@@ -25,7 +25,7 @@ ESTIMATES = {
     "best estimate": ("cw_best_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m"),
 }
 SUMS = ("n", "intervals", "error", "squared", "covered", "half_width", "flagged", "silent")
-EQUAL_BOATS = "type_homogeneity"
+EQUAL_BOATS = "type_consistency"
 """Table of the test whether boats of a type are equal; given where they are."""
 LEVEL = 0.05
 OF_SEASON = "season_in_doubt"
@@ -152,8 +152,8 @@ def _alarms(truth: pl.DataFrame, faulty: set[int], alarmed: set[int]) -> Record:
 def _equal_boats(tables: Mapping[str, pl.DataFrame]) -> Iterator[Record]:
     """How often identical boats are told apart."""
     if EQUAL_BOATS in tables:
-        p = tables[EQUAL_BOATS].drop_nulls("p_value")["p_value"]
-        counts = {"tested": p.len(), "rejected": int((p < LEVEL).sum())}
+        judged = tables[EQUAL_BOATS].filter(quantity="b_m_s").drop_nulls("spread_ratio")["verdict"]
+        counts = {"tested": judged.len(), "rejected": int((judged == "differ").sum())}
         yield {"what": "equal boats", "group": "types"} | counts
 
 

@@ -35,8 +35,9 @@ from herijk.simulate import WORLDS, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.assessment.plausibility import plausibility
 from pipeline.blocks.tows import Tows
-from pipeline.consistency.homogeneity import type_homogeneity
 from pipeline.consistency.observed import observe
+from pipeline.consistency.repeats import repeat_pairs
+from pipeline.consistency.types import compare_types
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, truth_rows
@@ -127,8 +128,9 @@ def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
     tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
     if equal_boats:
         boats = archive.tows.select("fsn_no", "boat_type").unique()
-        seen = observe(made.curves, archive.tows, boats, made.run_points)
-        tables[EQUAL_BOATS] = type_homogeneity(seen)
+        observed = observe(made.curves, archive.tows, boats, made.run_points)
+        pairs = repeat_pairs(made.curves, archive.tows)
+        tables[EQUAL_BOATS] = compare_types(observed, pairs).consistency
     return tables
 
 

@@ -13,7 +13,7 @@ import altair as alt
 import polars as pl
 
 from dashboards import labels
-from dashboards.figures import boat, slides, style
+from dashboards.figures import boat, style, types
 from dashboards.figures.charts import (
     CHANGE,
     CW,
@@ -34,16 +34,13 @@ from pipeline.uncertainty.propagation import COMPONENTS
 
 alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
 
-CAUSES: Final = ("boat", "season", "boat_season", "run")
-
 WEIGHT: Final = ("weight_kg", labels.column("weight_kg"))
 DECLARED: Final = ("declared_speed_m_s", say("Declared speed [m/s]"))
 A: Final = ("a_kg_m", labels.column("a_kg_m"))
 B: Final = ("b_m_s", labels.column("b_m_s"))
 STANDARD: Final = ("cw_standard_kg_m", say("Cw at the standard speed [kg/m]"))
-LENGTH: Final = ("waterline_length_m", say("Waterline length [m]"))
-QUANTITIES: Final = {"a": A, "b": B, "cw": STANDARD}
-EXPLAINING: Final = {"weight": WEIGHT, "speed": DECLARED}
+QUANTITIES: Final = {column[0]: column for column in (A, B, STANDARD)}
+EXPLAINING: Final = {column[0]: column for column in (WEIGHT, DECLARED)}
 
 
 def _against(quantity: Column, explaining: Column) -> Figure:
@@ -138,11 +135,6 @@ JUDGED: Final = (*CHOICES, *TICKS, *SPEEDS)
 """What options are judged by: choices of a method, and those of the tool of 2015."""
 RUN_TIPS: Final = ("run:O", "speed_m_s:Q", "cw_kg_m:Q")
 STAGES: Final = ("gross", "net")
-SCOPES: Final = ("fleet", "within_type")
-PREDICTED: Final = (
-    ("cw_kg_m", say("Cw of the tow [kg/m]")),
-    ("predicted_cw_kg_m", say("Predicted Cw [kg/m]")),
-)
 WIND: Final = (
     ("wind_angle_deg", say("Wind angle, 0 from ahead [deg]")),
     ("wind_m_s", say("Apparent wind [m/s]")),
@@ -163,7 +155,6 @@ FIGURES: Final[dict[str, Figure]] = {
     "a_weight": _against(A, WEIGHT),
     "cw_standard_weight": _against(STANDARD, WEIGHT),
     "cw_standard_speed": _against(STANDARD, DECLARED),
-    "predicted": scatter(*PREDICTED, style.types, ("name:N", "fsn_no:N"), line="same", height=360),
     "history": by_group(
         "tow", ("cw_kg_m", say("Cw at the declared speed [kg/m]")), ("cw_lo_kg_m", "cw_hi_kg_m"),
         tip=("tow:N",), dashed=True,
@@ -186,10 +177,6 @@ FIGURES: Final[dict[str, Figure]] = {
         "season", ("cw_ratio", labels.column("cw_ratio")), one=True,
         tip=("name:N", "fsn_no:N", "season_before:O", "e_n:Q"),
     ),
-    "components": by_group(
-        "component", ("sd_ratio", SPREAD), ("lo", "hi"), codes=CAUSES, zero=True,
-        facet=("scope", lambda say: named(SCOPES, say)),
-    ),
     "budget": bars(
         "component", ("u_ratio", say("Standard uncertainty / Cw")), COMPONENTS
     ),
@@ -198,12 +185,9 @@ FIGURES: Final[dict[str, Figure]] = {
     ),
     "ladder": _ladder,
     "changes": _gains,
-    "slide_boat_years": slides.boat_years,
-    "slide_hull_speed": slides.b_and_hull_speed(LENGTH, B),
-    "slide_towed_at": slides.towed_at(LENGTH, DECLARED),
     **{
-        f"slide_{name}": slides.against(QUANTITIES[y], EXPLAINING[x])
-        for name, (y, x) in slides.PAIRS.items()
+        f"type_{name}": types.against(QUANTITIES[y], EXPLAINING[x])
+        for name, (y, x) in types.PAIRS.items()
     },
 }  # fmt: skip
 """Every figure by name."""

@@ -16,9 +16,10 @@ from dashboards.site.parts import (
     methods_select,
     with_page,
 )
-from dashboards.site.prose import audit_guide, edition_pages, guide_links, method_pages, slides_page
+from dashboards.site.prose import audit_guide, edition_pages, guide_links, method_pages
 from dashboards.site.start import ABOUT, MENU, RELATIVE, season_change, start_page
 from dashboards.site.types import type_pages, types_page
+from dashboards.site.years import years_page
 from dashboards.speech import Headline
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
@@ -42,6 +43,7 @@ def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Itera
         "of types": lambda: type_pages(views, methods),
         "seasons": lambda: [_seasons(views, methods)],
         "changes": lambda: [_changes(views, methods, changes())],
+        "years": lambda: [years_page(views, methods)],
         "races": lambda: _races(views, methods),
         "about": lambda: [_about()],
         "quality": lambda: [_quality(views, methods)],
@@ -49,7 +51,6 @@ def shared_pages(views: Views, by_reports: bool) -> dict[str, Callable[[], Itera
         "methods": lambda: method_pages(views, methods),
         "audits": lambda: [audit_guide()],
         "editions": lambda: edition_pages(views),
-        "slides": lambda: [slides_page(views)],
     }
 
 
@@ -188,30 +189,6 @@ def _seasons(views: Views, methods: Sequence[str]) -> Page:
             ),
             with_page(views.ask("repeat_pairs").filter(shown)),
             "repeats",
-        ),
-        _drawn(
-            "variance_components",
-            say("Where the spread comes from"),
-            say(
-                "What differences between boats, between seasons, of a boat between seasons, and "
-                "between runs add to the spread of Cw: standard deviation with 95 % interval, from "
-                "one model of all tows with a curve (n). Each crew of a boat counts as a boat, and "
-                "again after an alteration."
-            ),
-            rows("variance_components").drop_nulls("sd_ratio"),
-            "components",
-        ),
-        _drawn(
-            "predicted_cw",
-            say("Predicted without towing"),
-            say(
-                "Cw from length, weight, beam and type against Cw from the tow. On the line they "
-                "agree. Disagrees: by more than the uncertainty of both; under a method that does "
-                "not estimate the log's error, that is not in it."
-            ),
-            with_page(views.ask("predicted").filter(shown)),
-            "predicted",
-            method="method",
         ),
         _season_links(views),
         _season_diagnosis(views),

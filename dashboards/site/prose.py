@@ -1,4 +1,4 @@
-"""Pages that are read: the methods, how to read an audit, the slides, and each edition."""
+"""Pages that are read: the methods, how to read an audit, and each edition."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
@@ -10,7 +10,6 @@ from markupsafe import Markup
 from dashboards import labels
 from dashboards.addresses import edition_page
 from dashboards.documents import pdf
-from dashboards.documents.slides import SOURCE
 from dashboards.guides import GUIDES, guide_file, method_guide
 from dashboards.html import keep_units
 from dashboards.markdown import to_blocks, to_html
@@ -19,7 +18,6 @@ from dashboards.site.parts import Chart, Page, Section
 from dashboards.speech import Speech
 from dashboards.statements import Statement, together
 from dashboards.statements.method import BASES, EACH_STEP, VOTE, WORKED, Explained, explained
-from dashboards.statements.slides import Slide, slides
 from pipeline.messages import Sentence, say
 from pipeline.register.register import STUDIED_METHOD, default_method
 from warehouse.queries.views import Views
@@ -124,26 +122,6 @@ def _listed(statements: Sequence[Statement]) -> Callable[[Speech], Markup]:
     return lambda speech: Markup("").join(
         paragraph.format(keep_units(statement(speech))) for statement in statements
     )
-
-
-def slides_page(views: Views) -> Page:
-    """The slides below each other, the same as in the PDF; those between are folded."""
-    made = list(slides(views)) if views.has("compared_tows") else []
-    sections = [
-        Section(
-            f"slide_{place}",
-            slide.finding,
-            charts=[Chart(slide.figure, [slide.rows], says=partial(_under, slide))],
-            folded=0 < place < len(made) - 1,
-        )
-        for place, slide in enumerate(made)
-    ]
-    return Page("slides.html", say("Presentation 2015"), sections)
-
-
-def _under(slide: Slide, speech: Speech) -> str:
-    notes = (*slide.notes, say(SOURCE, table=slide.source))
-    return Markup("<br>").join(map(speech.words, notes))
 
 
 DOWNLOADS: Final = "downloads"

@@ -26,13 +26,14 @@ MENU: Final = {
 }
 """Title of each page that the menu leads to."""
 
+YEARS: Final = (
+    say("The register of every year"),
+    say("What each method would have made of the register, and of the races, of every past year."),
+)
 ABOUT: Final = {
+    "years": YEARS,
     "words": (say("Glossary"), say("What the words and signs mean.")),
     "quality": (say("Quality"), say("Tows set aside, flags, and counts of the rebuild.")),
-    "slides": (
-        say("Presentation 2015"),
-        say("What the presentation of 24 January 2015 asked, answered before and after."),
-    ),
 }
 """The same of the pages that `About` leads to."""
 
@@ -47,6 +48,7 @@ DOORS: Final = (
         say("The vote"),
         say("The vote: what changes between two editions, for whom, and who would win."),
     ),
+    ("years.html", *YEARS),
     (
         "types.html",
         say("Are equal boats equal?"),

@@ -12,6 +12,7 @@ from dashboards import labels
 from dashboards.speech import Headline
 from dashboards.statements import Change, EditionName, Number, Statement, Value, together, told
 from pipeline.messages import Sentence, say
+from pipeline.register.words import CAUSES
 from pipeline.tables.row import Row
 
 NEGLIGIBLE: Final = 5e-4
@@ -95,7 +96,7 @@ def _main_cause(changed: pl.DataFrame) -> Iterator[Statement]:
             "; the cause is not known, because nobody recorded how the printed register was "
             "computed"
         )
-        if most[0][0] == labels.code("printed")
+        if most[0][0] == CAUSES["printed"]
         else say("; mostly because of {cause}")
     )
     yield told("main_cause", wording, {}, "register_changes", cause=most[0][0])

@@ -137,15 +137,15 @@ def _boat(scenario: Scenario, asked: Asked) -> Section:
 
 
 def _types(scenario: Scenario, asked: Asked) -> Section:
-    tests = scenario.both(lambda draft: draft.type_homogeneity)
+    tests = scenario.both(lambda draft: draft.type_consistency)
     drawn = [_leading(scenario.type_tows(asked.tows), asked)]
     return Section(
         "types",
         say("Types: are equal boats equal?"),
         note=say(
             "The chosen tows, Cw at the standard speed of the type. Drag over a chart to see "
-            "in the register which boats lie there. The table tests whether boats of a type "
-            "can share one B, with the newest of those tows of each crew: a small p says no."
+            "in the register which boats lie there. The table says whether boats of a type are "
+            "equal, by the newest tow of each boat and crew."
         ),
         charts=[
             Chart("b_weight", drawn, say("B against weight"), OF_TYPE),
@@ -158,9 +158,10 @@ def _types(scenario: Scenario, asked: Asked) -> Section:
         ],
         tables=[
             Table(
-                "homogeneity",
+                "type_consistency",
                 tests,
-                "method boat_type n_boats p_value power_at_10pct noise_share shared_b_m_s",
+                "method boat_type quantity n n_boats verdict difference_that_matters spread_ratio "
+                "farthest farthest_ratio weight_verdict tow_speed_verdict",
                 follows=["boat_type"],
             )
         ],

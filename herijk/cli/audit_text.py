@@ -4,12 +4,16 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
-import polars as pl
-
 from dashboards import labels
-from dashboards.statements import Statement
 from dashboards.statements.boat import Answer, answers_by_boat
-from dashboards.statements.boat_type import LINES, SPREAD, homogeneity, level, slopes
+from dashboards.statements.boat_type import (
+    HEADINGS,
+    Names,
+    describe_row,
+    judge_type,
+    order_rows,
+    sum_up_type,
+)
 from dashboards.statements.tow import name_run, name_runs
 from dashboards.statements.tow import statements as tow_statements
 from herijk.cli.render import (
@@ -27,7 +31,7 @@ from pipeline.method.definition import COMPLETE
 from pipeline.tables.first_assessment import RULES
 from pipeline.tables.row import Row
 from warehouse.queries.answers import current_edition
-from warehouse.queries.audit import WEIGHT_LINE, BoatAudit, TypesAudit
+from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.views import Views
 from warehouse.store.database import no_such_edition
 from warehouse.store.store import Store
@@ -54,8 +58,8 @@ def boat(report: BoatAudit, answers: Sequence[Answer], steps: bool) -> Iterator[
     yield Section(tell("Its tows"), rows=report.tows, columns=TOWS, empty=none)
     for tow in report.tows:
         yield from _tow_steps(tow)
-    for name, (heading, columns) in BOAT.items():
-        yield Section(tell(heading), rows=getattr(report, name), columns=f"method {columns}")
+    for table_of, heading, columns in BOAT:
+        yield Section(tell(heading), rows=getattr(report, table_of), columns=f"method {columns}")
     title = tell("Set aside, by its number or the name of its file")
     yield Section(title, lines=list(map(set_aside, report.set_aside)))
 
@@ -125,31 +129,41 @@ RUNS: Final = (
     "inertia_cw_kg_m air_cw_kg_m still_air_cw_kg_m temperature_cw_kg_m cw_kg_m fitted_cw_kg_m "
     "reason"
 )
-BOAT: Final = {
-    "in_type": (
+BOAT: Final = (
+    (
+        "in_type",
         say("Its place among the other boats of its type"),
-        "tow_id quantity value expected deviation_sd outside candidates",
+        "tow_id newest cw_standard_kg_m cw_expected_kg_m cw_deviation_sd cw_outside b_m_s "
+        "b_expected_m_s b_deviation_sd b_outside candidates",
     ),
-    "pooled": (say("If it shared its type's bend"), "tow_id pooling b_m_s cw_kg_m"),
-    "slow_tows": (say("Slow tow"), "tow_id declared_speed_m_s power_w slow"),
-    "repeat_pairs": (
+    (
+        "in_type",
+        say("Its tows beside its races"),
+        "tow_id declared_speed_m_s power_w slow races raced_speed_m_s raced_beyond_curve "
+        "raced_power_w raced_high power_ratio_raced",
+    ),
+    (
+        "repeat_pairs",
         say("Its repeat tows (E_n above 1: they disagree)"),
         "tow_id_before tow_id ln_ratio e_n",
     ),
-    "predicted": (
+    (
+        "predicted",
         say("As predicted from weight, length, beam and type by the other boats"),
         "tow_id cw_kg_m predicted_cw_kg_m predicted_lo_kg_m predicted_hi_kg_m disagrees",
     ),
-    "options": (
+    (
+        "options",
         say("What other choices do to Cw, the largest first"),
         "tow_id study option cw_effect_ratio",
     ),
-    "register": (
+    (
+        "register",
         say("In the registers"),
         "edition crew status a_kg_m b_m_s cw_kg_m declared_speed_m_s tow_id valid_until",
     ),
-}
-"""Tables about a boat, with the columns shown."""
+)
+"""Tables about a boat: where their rows are, their headings, and the columns shown."""
 
 
 def _tow_steps(tow: Row) -> Iterator[Part]:
@@ -226,12 +240,25 @@ def lineage(report: "Lineage") -> Iterator[Part]:
 
 
 def types(report: TypesAudit, steps: bool) -> Iterator[Part]:
-    """Whether the boats of one or two types are equal; with which statistics where asked."""
+    """Tell whether the boats of one or two types are equal; with statistics where asked."""
     newest = report.methods[-1]
     yield marked(report.simulated)
-    yield _slopes(report, report.methods if steps else [report.methods[0], newest])
     for one in report.types:
-        yield Section(_facts(one), _equal(one, newest), one["boat_type"])
+        under = one["under"][newest]
+        said = [
+            sum_up_type(under["consistency"]),
+            *judge_type(under["consistency"], under["outside"], _name_boats(one)),
+        ]
+        rows = _compare_methods(one, report.methods if steps else [report.methods[0], newest])
+        told = [f"told_{place}" for place in range(len(HEADINGS))]
+        yield Section(
+            _facts(one),
+            said,
+            one["boat_type"],
+            rows=rows,
+            columns=f"quantity method n n_boats {' '.join(told[place] for place in SHOWN)}",
+            heads=dict(zip(told, HEADINGS, strict=True)),
+        )
     if differing := report.differences[newest]:
         named = (" / ".join(map(codes, difference.split())) for difference in differing)
         yield tell("What differs by more than chance: {}", ", ".join(named))
@@ -258,35 +285,25 @@ def _facts(of_type: Row) -> str:
     )
 
 
-def _equal(of_type: Row, method: str) -> list[Statement]:
-    """Whether they are equal, as the site says it, and which tows stand out."""
-    under = of_type["under"][method]
-    line = [row for row in under["lines"] if row.items() >= WEIGHT_LINE.items()]
-    outliers = pl.DataFrame(under["outside"])
-    return [
-        homogeneity(pl.DataFrame(under["bends"])),
-        level(pl.DataFrame(under["newest"]), pl.DataFrame(line), outliers),
-    ]
+def _name_boats(of_type: Row) -> Names:
+    """Return the name of each boat of a type that is named, by its number."""
+    names: dict[str, str] = {}
+    for under in of_type["under"].values():
+        names |= {row["farthest"]: row["farthest_name"] for row in under["consistency"]}
+        names |= {row["fsn_no"]: row["name"] for row in under["outside"]}
+    return names
 
 
-def _slopes(report: TypesAudit, methods: Sequence[str]) -> Section:
-    """B, A and Cw on weight and on tow speed, of every type by method."""
-    names = [f"slope_{place}" for place in range(len(LINES))]
-    found = slopes(_rows(report, list(dict.fromkeys(methods)), "lines"))
-    return Section(
-        tell(
-            "Do B, A and Cw follow weight or tow speed? Cw at the standard speed, of the newest "
-            "tow of each crew."
-        ),
-        rows=[
-            one._asdict()
-            | {"about": f"{one.boat_type} {one.quantity} {one.method}"}
-            | dict(zip(names, one.slopes, strict=True))
-            for one in found
-        ],
-        columns=f"boat_type quantity method n {' '.join(names)} spread",
-        heads=dict(zip(names, LINES.values(), strict=True)) | {"spread": SPREAD},
-    )
+def _compare_methods(of_type: Row, methods: Sequence[str]) -> list[Row]:
+    """Return rows in words of Cw, B and A of a type, each under the methods side by side."""
+    names = _name_boats(of_type)
+    rows = []
+    for method in dict.fromkeys(methods):
+        for row in of_type["under"][method]["consistency"]:
+            about = f"{of_type['boat_type']} {row['quantity']} {method}"
+            cells = {f"told_{place}": told for place, told in enumerate(describe_row(row, names))}
+            rows.append(row | cells | {"about": about})
+    return order_rows(rows)
 
 
 def _rows(report: TypesAudit, methods: Sequence[str], name: str) -> list[Row]:
@@ -299,30 +316,22 @@ def _rows(report: TypesAudit, methods: Sequence[str], name: str) -> list[Row]:
     ]
 
 
+SHOWN: Final = (0, 2, 3)
+"""Places in `HEADINGS` that fit on a terminal; the others are in the sentences and in `--json`."""
+
 STEPS: Final = {
-    "bends": (
-        say("Can all boats have the same bend?"),
-        "n p_value power_at_10pct noise_share equal_possible reason",
-    ),
-    "speed_trend": (
-        say("Does the bend q = (v/B)^2 / (1 - (v/B)^2) follow the tow speed?"),
-        "n slope slope_lo slope_hi follows reason",
-    ),
-    "hull_speed": (say("Is B hull speed?"), "n b_ratio b_ratio_lo b_ratio_hi tow_ratio"),
-    "shared": (
-        say("If like boats shared one bend: B, and the most that Cw would move at 115 %"),
-        "pooling n median_b_m_s b_sd_ratio most_115 most_fsn_no",
+    "consistency": (
+        say("Are they equal?"),
+        "quantity n n_boats mean verdict rest_verdict difference_that_matters spread_ratio "
+        "spread_lo spread_hi error_ratio repeat_pairs noise_ratio zero_sd_n season_sd",
     ),
     "outside": (
-        say("Boats outside their type"),
-        "fsn_no name tow_id quantity value expected deviation_sd",
+        say("Boats that stand out"),
+        "fsn_no name tow_id cw_standard_kg_m cw_expected_kg_m cw_deviation_sd b_m_s "
+        "b_expected_m_s b_deviation_sd candidates",
     ),
     "slow_tows": (say("Slow tows"), "fsn_no name tow_id declared_speed_m_s power_w"),
     "eras": (say("Does an era stand apart?"), "era shift_ratio lo hi apart n reason"),
     "repeats": (say("Repeat tows"), "n_pairs sd_ratio n_e_n n_disagree"),
-    "prediction": (
-        say("Cw from weight, length, beam and type"),
-        "n_predicted rmse_ratio tow_sd_ratio n_disagree",
-    ),
 }
 """Statistics of a type with the columns shown."""

@@ -1,5 +1,6 @@
 """Two editions, drafts or methods side by side: who gains, who loses, and why."""
 
+import datetime as dt
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -39,10 +40,13 @@ class Compared:
     effect: DiffReport | None
 
 
-def compared(store: Store, old: str, new: str, rules: RaceRules) -> Compared:
+def compared(
+    store: Store, old: str, new: str, rules: RaceRules, as_of: dt.date | None = None
+) -> Compared:
     """Compares editions as they are, and drafts, methods and method files as their drafts are.
 
-    Two drafts are compared over all of history: also lines whose tow has expired.
+    Two drafts are compared over all of history: also lines whose tow has expired; as of a day, the
+    lines that counted on it.
 
     Raises:
         HerijkError: there is no such method or edition, or it cannot be computed.
@@ -58,9 +62,10 @@ def compared(store: Store, old: str, new: str, rules: RaceRules) -> Compared:
     options = [] if before is None or after is None else list(differences(after, before))
     if not {old, new} <= {*published} and store.made_from("tows") is None:
         return Compared(old, new, options, None)
-    counting = ("valid",) if {old, new} & {*published} else ("valid", "expired")
+    of_a_day = as_of is not None or {old, new} & {*published}
+    counting = ("valid",) if of_a_day else ("valid", "expired")
     first, second = (
-        side if isinstance(side, Edition) else drafted(store, side, counting=counting)
+        side if isinstance(side, Edition) else drafted(store, side, as_of, counting)
         for side in sides
     )
     return Compared(old, new, options, report_with_races(store, first, second, rules))

@@ -1,4 +1,4 @@
-"""`herijk export`: pages of the site, certificates, a proposal to vote on, and slides."""
+"""`herijk export`: pages of the site, certificates, and a proposal to vote on."""
 
 import datetime as dt
 from pathlib import Path
@@ -19,7 +19,7 @@ out_option = option("--out", type=PATH, help="PDF to write, or a folder for it."
 
 @click.group(cls=Group)
 def export() -> None:
-    """Pages of the site, certificates, a proposal or slides as files."""
+    """Pages of the site, certificates or a proposal as files."""
 
 
 @export.command()
@@ -94,24 +94,6 @@ def proposal(
         known = KnownMethods.of(store)
         made = letters.proposal(views, methods, against, LANGUAGE.get(), known, letter)
         _write(store, made, name, out)
-
-
-@export.command()
-@data_option
-@out_option
-@option("--type", "types", multiple=True, help="Type of boat; repeat for more.")
-@option("--boat", "boats", multiple=True, help="Boat, by number or name; repeat for more.")
-@json_option
-def slides(
-    store: "Store", out: Path | None, types: tuple[str, ...], boats: tuple[str, ...]
-) -> None:
-    """What the 2015 presentation asked, over this archive: a finding and a chart per slide."""
-    from dashboards.documents.slides import slide_book
-    from warehouse.queries.views import Views
-    from warehouse.store.unforeseen import documents
-
-    with documents(store.root, "slides") as border, Views(store) as views:
-        _write(store, slide_book(views, LANGUAGE.get(), types, boats, border), "slides", out)
 
 
 def _write(store: "Store", content: bytes | None, name: str, out: Path | None) -> None:

@@ -21,6 +21,7 @@ from warehouse.queries.assess import Assessment
 from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.registers import DueReport, RegisterReport
 from warehouse.queries.reports import LogErrorReport
+from warehouse.queries.years import YearsReport
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,7 @@ FORMS: Final[dict[str, Any]] = {
     "rebuild of an archive without tows": NoTowsYet,
     "register": RegisterReport,
     "register --due": DueReport,
+    "register --years": YearsReport,
     "seasons": LogErrorReport,
     "simulate": Simulated,
     "verify": Verification,

@@ -1,11 +1,12 @@
 """`herijk methods`: list, show, begin and check methods; and `herijk compare`."""
 
+import datetime as dt
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import data_option, json_option, show, show_files
+from herijk.cli.options import as_of_option, data_option, json_option, show, show_files
 from herijk.cli.speaking import Command, Group, argument, option
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, tell
@@ -104,8 +105,9 @@ def new(name: str, base: str, store: "Store") -> None:
     default="extend",
     help="Fatigue correction of races between editions: none, known (2 to 3 h only) or extend.",
 )
+@as_of_option
 @json_option
-def compare(old: str, new: str, store: "Store", fatigue: str) -> None:
+def compare(old: str, new: str, store: "Store", fatigue: str, as_of: dt.date | None) -> None:
     """Two editions or methods side by side: who gains, who loses, and why.
 
     Published editions are compared as they are, with races. For a draft, a method or a method file
@@ -117,4 +119,4 @@ def compare(old: str, new: str, store: "Store", fatigue: str) -> None:
     from pipeline.register.replay import Fatigue, RaceRules
 
     rules = RaceRules(fatigue=cast(Fatigue, fatigue))
-    show(text.compared(store, old, new, rules), text.text)
+    show(text.compared(store, old, new, rules, as_of), text.text)

@@ -21,15 +21,26 @@ if TYPE_CHECKING:
     help="When each tow expires, and at what speed to tow next, by the curves of the edition's "
     "method.",
 )
+@flag(
+    "--years",
+    help="The register of every past year, as published and as the edition's method would have "
+    "had it.",
+)
 @data_option
 @as_of_option
 @json_option
-def register(edition: str | None, due: bool, store: "Store", as_of: dt.date | None) -> None:
+def register(
+    edition: str | None, due: bool, years: bool, store: "Store", as_of: dt.date | None
+) -> None:
     """The register: every line with its sizes, and whether it is valid on a day."""
     from herijk.cli import registers_text as text
     from warehouse.queries.registers import due_report, register_report
 
-    if due:
+    if years:
+        from warehouse.queries.years import years_report
+
+        show(years_report(store, _method_of(store, edition)), text.years)
+    elif due:
         show(due_report(store, _method_of(store, edition), as_of), text.due)
     else:
         show(register_report(store, edition, as_of), text.register)

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
+from dashboards import labels
 from dashboards.statements import due as of_due
 from dashboards.statements import edition, season
 from herijk.cli.render import Part, Section, codes, marked, prose, speech
@@ -12,10 +13,12 @@ from pipeline.messages import ngettext, say, tell
 from pipeline.tables.row import Row
 
 if TYPE_CHECKING:
+    from warehouse.editions.integrity import Finding
     from warehouse.editions.publish import Published
-    from warehouse.editions.verify import Finding, Verification
+    from warehouse.editions.verify import Verification
     from warehouse.queries.registers import DueReport, RegisterReport
     from warehouse.queries.reports import LogErrorReport
+    from warehouse.queries.years import YearsReport
 
 
 def _frame(rows: Sequence[Row]) -> pl.DataFrame:
@@ -45,6 +48,33 @@ def register(report: "RegisterReport") -> Iterator[Part]:
         rows=report.lines,
         columns=REGISTER,
         note=tell(edition.REGISTER),
+    )
+
+
+def years(report: "YearsReport") -> Iterator[Part]:
+    """What a method would have changed in the register of every year."""
+    yield marked(report.simulated)
+    yield Section(
+        tell("At the end of each season: the register under {} / as published", report.method),
+        rows=report.years,
+        columns="year lines changed median_ratio lowest_ratio highest_ratio exceeds_interval "
+        "rank_changed printed_lines printed_median_ratio printed_largest_ratio",
+        note=tell(
+            "Cw at the declared speed; the same rule of validity on both sides. Printed: that "
+            "year's printed register / the one that the method of that time gives."
+        ),
+    )
+    yield Section(
+        tell("Winners, by the register of that time and by this one:"),
+        rows=report.winners,
+        columns="race race_date crew_class published_winner winner winner_changed "
+        "change_probability",
+        empty=tell("The archive holds no races."),
+    )
+    yield Section(
+        tell("Causes, with their factor on Cw:"),
+        rows=[row | {"cause": tell(labels.cause(row))} for row in report.causes],
+        columns="year cause lines median_factor lowest_factor highest_factor",
     )
 
 
@@ -177,7 +207,7 @@ def verify(report: "Verification") -> Iterator[Part]:
         return
     yield Section(
         rows=list(map(vars, report.editions)),
-        columns="edition kind lines made_again equal",
+        columns="edition kind lines equal",
         note=tell(
             "Made again: measured lines from the samples files of the archive, carried lines from "
             "the printed edition, printed lines from the register in the archive."
@@ -202,6 +232,11 @@ def verify(report: "Verification") -> Iterator[Part]:
             ],
         )
     yield _verdict(report.findings)
+    if report.is_without_head:
+        yield tell(
+            "Without the head from the minutes nobody can see whether the last edition was "
+            "removed: herijk verify --head SEAL"
+        )
 
 
 def _verdict(findings: "list[Finding]") -> str:

@@ -40,7 +40,9 @@ CHANGES: Final = {
 }
 """Columns with new over old, shown as a change in per cent."""
 
-SHARES: Final = re.compile("share|_sd_ratio|^sd_|u_ratio|rmse|most_|r2|at_10pct|p_fault")
+SHARES: Final = re.compile(
+    "share|_sd_ratio|^sd_|u_ratio|r2|p_fault|spread_|error_ratio|season_sd|difference_that_matters"
+)
 """Columns with a part of a whole, shown in per cent."""
 
 _NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0[%sN])?\*?|-?")

@@ -24,6 +24,7 @@ class Defects:
     log_tow_sd: float = 0.0  # sd of ln factor between the tows of a season
     log_run_wander: float = 0.0  # relative sd between runs, and slowly within a run
     log_noise_m_s: float = 0.0  # sd
+    log_flicker: float = 0.0  # relative sd of 1/f noise
     log2_ratio: tuple[float, float] = (1.0, 1.0)  # range of log 2 / log 1, drawn each tow
     log_trend: float = 0.0  # change of ln factor from the first day of the season to the last
     log_replaced: float = 0.0  # change of ln factor at an unreported change of log in mid-season
@@ -42,6 +43,7 @@ class Defects:
     temperature_missing_share: float = 0.0  # of tows whose list does not give it
     wind_m_s: float = 0.0  # mean true wind speed
     wind_turbulence: float = 0.0  # sd of the wind over its mean
+    slow_gusts: float = 0.0  # sd of gusts that last half a minute, over the mean wind
     vane_jitter_deg: float = 0.0  # sd
     vane_offset_deg: float = 0.0
     anemometer_scale: float = 1.0  # reading over true
@@ -54,12 +56,16 @@ class Defects:
     ramp_m_s: float = 0.0  # largest speed missing at the start
     steering_share: float = 0.0  # of runs, with
     steering_force: float = 0.0  # a relative force peak
+    steering_peaks: float = 0.0  # mean number in a run, anywhere in it, of
+    steering_peak_force: float = 0.0  # relative force peaks, half of this to this
+    surge_m_s: float = 0.0  # sd of the boat's swing on the tow line, once in four seconds
     inertia: float = 0.0  # part of (m + added mass) dv/dt that the load cell feels: 0 or 1
     surge_force: float = 0.0  # relative sd of the 1 Hz surge of the tow line
     force_wander: float = 0.0  # relative sd, seconds
     force_noise: float = 0.0  # relative sd, fast
     force_scale: float = 1.0  # reading over true
     force_zero_n: float = 0.0  # reading without force
+    force_zero_tow_n: float = 0.0  # sd of that between tows
     force_zero_drift_n: float = 0.0  # change of that from the first day of the season to the last
     askew_share: float = 0.0  # of tows pulled askew
     askew_excess: tuple[float, float] = (0.0, 0.0)  # range of the relative excess of force

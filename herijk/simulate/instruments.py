@@ -12,7 +12,13 @@ from numpy.typing import NDArray
 from herijk.simulate.defects import Defects
 from herijk.simulate.hull import AirCoefficients, air_force_n, water_cw_kg_m
 from herijk.simulate.motion import SLOW_HZ, TrueRun
-from herijk.simulate.random_streams import Component, TowStreams, coloured_noise, smooth_wander
+from herijk.simulate.random_streams import (
+    Component,
+    TowStreams,
+    coloured_noise,
+    flicker_noise,
+    smooth_wander,
+)
 from herijk.simulate.world import Tow
 from pipeline.channels import RUN_SECONDS
 
@@ -41,13 +47,15 @@ def read_logs(
     step_s = RUN_SECONDS / time_s.size
     speed_m_s = np.interp(time_s, run.grid_s, run.speed_m_s)
     readings = []
-    for ratio, slow, fast in (
-        (1.0, Component.LOG1_SLOW, Component.LOG1_NOISE),
-        (tow.truth.log2_ratio, Component.LOG2_SLOW, Component.LOG2_NOISE),
+    for ratio, slow, fast, one_over_f in (
+        (1.0, Component.LOG1_SLOW, Component.LOG1_NOISE, Component.LOG1_FLICKER),
+        (tow.truth.log2_ratio, Component.LOG2_SLOW, Component.LOG2_NOISE, Component.LOG2_FLICKER),
     ):
         offset = streams[slow].standard_normal()
         wander = offset + smooth_wander(streams[slow], run.grid_s.size, 1 / SLOW_HZ, LOG_WANDER_S)
-        scale = ratio / tow.truth.log_factor * (1.0 + defects.log_run_wander * wander)
+        flicker = flicker_noise(streams[one_over_f], run.grid_s.size, 1 / SLOW_HZ)
+        error = defects.log_run_wander * wander + defects.log_flicker * flicker
+        scale = ratio / tow.truth.log_factor * (1.0 + error)
         noise = coloured_noise(streams[fast], speed_m_s.size, step_s, LOG_NOISE_S)
         reading = speed_m_s * np.interp(time_s, run.grid_s, scale) + defects.log_noise_m_s * noise
         readings.append(reading.astype(np.float32))

@@ -12,7 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from herijk.simulate.defects import Defects
-from herijk.simulate.random_streams import Component, TowStreams, coloured_noise, smooth_wander
+from herijk.simulate.random_streams import (
+    Component,
+    TowStreams,
+    coloured_noise,
+    smooth_wander,
+    swing,
+)
 from herijk.simulate.world import Tow
 from pipeline.channels import BACK, OUT, RUN_SECONDS, RUNS_PER_FILE, TARGET_SPEED_RATIOS
 
@@ -35,6 +41,10 @@ RAMP_OVER_M_S: Final = 0.01
 HELM_S: Final = 8.0
 TURBULENCE_S: Final = 6.0
 """Correlation times of the helmsman's wander and of gusts (stated assumptions)."""
+SLOW_GUSTS_S: Final = 30.0
+SURGE_HZ: Final = 0.25
+SURGE_PHASE_S: Final = 15.0
+STEERING_PEAK_S: Final = (2.0, 5.0)
 LATERAL_TURBULENCE: Final = 0.75
 """Turbulence across the wind, relative to that along it."""
 
@@ -117,7 +127,8 @@ def true_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueRun]:
                 ground_speed_m_s=ground_m_s,
                 wind_ahead_m_s=ground_m_s + direction * (along * cosine - across * sine),
                 wind_abeam_m_s=direction * (along * sine + across * cosine),
-                steering_force=defects.steering_force * steering,
+                steering_force=defects.steering_force * steering
+                + _steering_peaks(grid_s, defects, streams[Component.STEERING_PEAKS]),
             )
         )
     return runs
@@ -151,6 +162,7 @@ def _speed(
     missed = 1.0 + defects.speed_miss * rng.standard_normal()
     wander = smooth_wander(rng, grid_s.size, 1.0 / SLOW_HZ, HELM_S)
     speed = target_m_s * missed + defects.speed_wander_m_s * wander
+    speed += defects.surge_m_s * swing(streams[Component.SURGE], grid_s, SURGE_HZ, SURGE_PHASE_S)
     chance, size, position = streams[Component.RAMP].random(3)
     if chance >= defects.ramp_share:
         return np.asarray(speed)
@@ -180,6 +192,18 @@ def _bump(
     return np.asarray(0.5 - 0.5 * np.cos(2 * np.pi * phase))
 
 
+def _steering_peaks(grid_s: Floats, defects: Defects, rng: np.random.Generator) -> Floats:
+    """Return relative force of raised cosines anywhere in the run, which no window can avoid."""
+    force = np.zeros(grid_s.size)
+    for _ in range(rng.poisson(defects.steering_peaks)):
+        start, length, size = rng.random(3)
+        duration_s = STEERING_PEAK_S[0] + length * (STEERING_PEAK_S[1] - STEERING_PEAK_S[0])
+        phase = np.clip((grid_s - start * (RUN_SECONDS - duration_s)) / duration_s, 0.0, 1.0)
+        height = defects.steering_peak_force * (0.5 + 0.5 * size)
+        force += height * (0.5 - 0.5 * np.cos(2 * np.pi * phase))
+    return force
+
+
 def _undisturbed(noted: list[Disturbance]) -> tuple[float, float]:
     """The part of the run between the disturbances at its start and those at its end."""
     middle_s = RUN_SECONDS / 2
@@ -197,4 +221,9 @@ def _turbulent_wind(
     sd_m_s = wind_m_s * defects.wind_turbulence
     along = wind_m_s + sd_m_s * coloured_noise(rng, grid_s.size, step_s, TURBULENCE_S)
     across = sd_m_s * LATERAL_TURBULENCE * coloured_noise(rng, grid_s.size, step_s, TURBULENCE_S)
+    slow = streams[Component.SLOW_GUSTS]
+    slow_sd_m_s = wind_m_s * defects.slow_gusts
+    along = along + slow_sd_m_s * coloured_noise(slow, grid_s.size, step_s, SLOW_GUSTS_S)
+    slow_across = coloured_noise(slow, grid_s.size, step_s, SLOW_GUSTS_S)
+    across = across + slow_sd_m_s * LATERAL_TURBULENCE * slow_across
     return along.astype(np.float64), across.astype(np.float64)

@@ -11,6 +11,9 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+FLICKER_S = (0.2, 0.8, 3.2, 12.8, 51.2)
+"""Correlation times of the parts of `flicker_noise`."""
+
 Floats = NDArray[np.float64]
 
 
@@ -56,6 +59,12 @@ class Component(IntEnum):
     FORCE_WANDER = 27
     FORCE_NOISE = 28
     DAMAGE = 29
+    LOG1_FLICKER = 30
+    LOG2_FLICKER = 31
+    SLOW_GUSTS = 32
+    STEERING_PEAKS = 33
+    SURGE = 34
+    FORCE_ZERO = 35
 
 
 def stream(seed: int, subject: Subject, *address: int) -> np.random.Generator:
@@ -91,6 +100,25 @@ def coloured_noise(
     start = np.array([decay * white[0]], dtype=np.float32)
     noise, _ = scipy.signal.lfilter(*coefficients, white[1:], zi=start)
     return np.asarray(noise, dtype=np.float32)
+
+
+def flicker_noise(rng: np.random.Generator, count: int, step_s: float) -> Floats:
+    """Return noise of unit variance with a 1/f spectrum from 1/300 to 1 Hz, shape (count,).
+
+    A sum of first-order processes with equal variances and correlation times that are a factor
+    apart has such a spectrum (van der Ziel 1950).
+    """
+    parts = [coloured_noise(rng, count, step_s, time_s) for time_s in FLICKER_S]
+    return np.asarray(np.sum(parts, axis=0, dtype=np.float64) / np.sqrt(len(FLICKER_S)))
+
+
+def swing(rng: np.random.Generator, time_s: Floats, frequency_hz: float, phase_s: float) -> Floats:
+    """Return a swing of unit variance that loses its phase in some seconds, at even times."""
+    step_s = time_s[1] - time_s[0]
+    cosine = coloured_noise(rng, time_s.size, step_s, phase_s)
+    sine = coloured_noise(rng, time_s.size, step_s, phase_s)
+    angle = 2 * np.pi * frequency_hz * time_s
+    return np.asarray(cosine * np.cos(angle) + sine * np.sin(angle))
 
 
 def smooth_wander(

@@ -330,7 +330,8 @@ def _tow(
             ),
             log2_ratio=float(draw(Component.LOG2_RATIO).uniform(*defects.log2_ratio)),
             force_zero_n=defects.force_zero_n
-            + defects.force_zero_drift_n * _place_in_season(settings, day),
+            + defects.force_zero_drift_n * _place_in_season(settings, day)
+            + defects.force_zero_tow_n * float(draw(Component.FORCE_ZERO).standard_normal()),
             askew_ratio=1.0 + _askew_excess(defects, draw(Component.ASKEW)),
             altered=any(s > previous_season for s in condition.altered_seasons),
         ),

@@ -66,25 +66,46 @@ def _warming(first: float, last: float) -> Faults:
 SPREAD_OUT: Final = {"tows_a_day": 2, "days_apart": 3}
 """A season of weeks, so that something can drift in it."""
 
+MODERATE: Final[Faults] = {
+    EVER: {
+        "tide_m_s": 0.05,
+        "vane_offset_deg": 3.0,
+        "anemometer_scale": 0.97,
+        "alteration_share": 0.08,
+        "unreported_share": 0.7,
+        "askew_gross_share": 0.0,
+    },
+    BEFORE_DGPS: {"log_tow_sd": 0.004, "log_trend": 0.005, "askew_share": 0.02},
+    range(2011, 2012): {"force_scale": 1.002},
+    range(2013, 2014): {"force_scale": 0.998, "force_zero_n": 0.5},
+    range(2015, 2016): {"force_scale": 0.998},
+    range(2017, 2018): {"force_scale": 1.002, "force_zero_n": -0.5},
+}
+"""Errors of every kind at moderate size."""
+
+ROUGH: Final[Mapping[str, Any]] = {
+    "slow_gusts": 0.25,
+    "log_flicker": 0.01,
+    "stream_drift_m_s": 0.015,
+    "steering_peaks": 0.7,
+    "steering_peak_force": 0.3,
+    "surge_m_s": 0.0015,
+    "surge_force": 0.10,
+    "force_zero_tow_n": 2.0,
+}
+"""Errors that remember: each spoils a window or a whole tow, and none of them averages out."""
+
 WORLDS: Final[Mapping[str, NamedWorld]] = {
     "history": NamedWorld("Everything that is known to have gone wrong.", base=Defects.history),
     "real": NamedWorld(
         "Errors of every kind at moderate size: humped hulls, logs that drift, unreported changes.",
-        {
-            EVER: {
-                "tide_m_s": 0.05,
-                "vane_offset_deg": 3.0,
-                "anemometer_scale": 0.97,
-                "alteration_share": 0.08,
-                "unreported_share": 0.7,
-                "askew_gross_share": 0.0,
-            },
-            BEFORE_DGPS: {"log_tow_sd": 0.004, "log_trend": 0.005, "askew_share": 0.02},
-            range(2011, 2012): {"force_scale": 1.002},
-            range(2013, 2014): {"force_scale": 0.998, "force_zero_n": 0.5},
-            range(2015, 2016): {"force_scale": 0.998},
-            range(2017, 2018): {"force_scale": 1.002, "force_zero_n": -0.5},
-        },
+        MODERATE,
+        {"shape": "hump"},
+        base=Defects.history,
+    ),
+    "rough": NamedWorld(
+        "As real, with gusts and logs that have a memory, surge, steering peaks, a wandering zero.",
+        {**MODERATE, EVER: {**MODERATE[EVER], **ROUGH}},
         {"shape": "hump"},
         base=Defects.history,
     ),

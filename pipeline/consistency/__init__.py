@@ -1,11 +1,8 @@
-"""Are equal boats equal? Statistics of boats of one type and of repeated tows.
+"""Are equal boats equal? Boats of one type, and repeated tows of one boat.
 
-Belongs here: what a table of curves says about boats of a type (`compared`, `lines`,
-`homogeneity`), about the speed of the tow (`tow_speed`), about repeats (`repeats`, `eras`,
-`components`) and about a boat that was only measured (`prediction`). Does not belong here: how a
-curve is made, which differences matter to a race (`pipeline.register.changes`), and any judgement:
-tables say, people decide.
-
-`observed` joins the tables and carries the measuring errors; `mixed` describes what is fitted to
-`reml`; `tables` puts it all together.
+Read in this order: `observed` joins the tables and brings curves to one speed; `repeats` is about
+several tows of one boat, and `noise` what they say of the measuring errors; `boat_model` is the
+statistical model; `types` fits it per type and quantity and gives the verdicts; `compared` puts
+every tow beside its type; `prediction` does without a tow. How a curve is made does not belong
+here, nor which differences matter to a race (`pipeline.register.changes`).
 """

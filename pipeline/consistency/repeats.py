@@ -1,9 +1,12 @@
-"""How far two tows of one unaltered boat agree: pairs, repeatability and reproducibility.
+"""How far two tows of one unaltered boat agree: pairs, reproducibility, and whether eras differ.
 
-ISO 5725 with the season as the laboratory: s_r within a tow, s_R between tows. Which seasons stand
-apart is in `eras`, how the spread divides over boat, season and the rest in `components`.
+ISO 5725 with the season as the laboratory: s_r within a tow, s_R between tows. A worn log makes all
+tows of an era too high; so does nothing else that hits every boat, but for age, and how boats age
+is seen in the last era, where instruments are alike.
 """
 
+from collections.abc import Sequence
+from math import exp, hypot
 from typing import Final
 
 import numpy as np
@@ -13,12 +16,16 @@ import scipy
 from polars.dataframe.group_by import GroupBy
 
 from pipeline.arrays import FloatArray
-from pipeline.consistency.observed import Observed
+from pipeline.consistency.boat_model import Interval
+from pipeline.consistency.observed import ALL_TYPES, UNKNOWN_TYPE
 from pipeline.curve import s_of_height
-from pipeline.history import ERAS
+from pipeline.history import ERAS, Era
 from pipeline.quantiles import LEVEL
-from pipeline.tables.consistency import RepeatPairs
+from pipeline.tables.consistency import EraShifts, RepeatPairs
+from pipeline.tables.declare import dy
+from pipeline.tables.frames import frame_of
 from pipeline.tables.keys import LINE
+from pipeline.tables.row import Row
 
 ALL_PAIRS: Final = "all"
 
@@ -78,7 +85,7 @@ def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
     return np.where(left > 0, a / np.where(left > 0, left, 1.0), 0.0)
 
 
-def reproducibility(repeat_pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
+def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.DataFrame:
     """Standard deviation of one tow from repeat pairs, per method and era of the older tow.
 
     A pair differs by sqrt(2) times the deviation of one tow, so s^2 = sum(d^2) / (2 n), with a
@@ -88,7 +95,7 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: Observed) -> pl.DataFr
 
     Args:
         repeat_pairs: rows of that table.
-        observed: all tows, for the scatter within a tow.
+        observed: rows of `observe`, for the scatter within a tow.
 
     Returns:
         Rows of the table `reproducibility`, one per method and scope, also where it has no pairs.
@@ -110,10 +117,10 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: Observed) -> pl.DataFr
         share_within_2pct=(difference.abs() < 0.02).mean(),
     )
     run_variance = pl.col("run_rss_ratio2").sum() / pl.col("run_dof").sum()
-    tows = of_scopes(observed.table, "season").agg(
+    tows = of_scopes(observed, "season").agg(
         n_tows=n, within_sd_ratio=(run_variance * pl.col("c0_unit_variance").mean()).sqrt()
     )
-    found = observed.table.select("method").unique(maintain_order=True).join(scopes, how="cross")
+    found = observed.select("method").unique(maintain_order=True).join(scopes, how="cross")
     for part in (pairs, tows):
         found = found.join(part, on=key, how="left", maintain_order="left")
     n_pairs, chained = (found[name].cast(pl.Float64).to_numpy() for name in ("n_pairs", "chained"))
@@ -130,3 +137,81 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: Observed) -> pl.DataFr
         cs.starts_with("share_within"),
         "within_sd_ratio",
     )
+
+
+def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShifts]:
+    """Shift of Cw from the tows of an era to the next tow of the same boat and crew, later.
+
+    Per method, era but the last, and boat type; also over all types. The shift is a median with
+    an interval from order statistics. Ageing is the median change per year of all pairs within the
+    last era; where these are too few, none is taken out. Its uncertainty is in the interval.
+
+    Args:
+        repeat_pairs: the table of that name.
+        boats: `fsn_no` and `boat_type`, null without a type.
+
+    Returns:
+        Rows of the table `era_shifts`; where nothing is claimed, `reason` says why.
+    """
+    typed = repeat_pairs.join(
+        boats.select("fsn_no", pl.col("boat_type").fill_null(UNKNOWN_TYPE)),
+        on="fsn_no",
+        how="left",
+        maintain_order="left",
+    )
+    types = sorted(typed["boat_type"].drop_nulls().unique())
+    rows = []
+    for method in repeat_pairs["method"].unique().sort():
+        own = typed.filter(pl.col("method") == method)
+        within = own.filter((pl.col("season_before") >= ERAS[-1].first) & (_years() > 0))
+        yearly = within.select(pl.col("ln_ratio") / _years()).to_series().to_numpy()
+        groups = {ALL_TYPES: own} | {t: own.filter(pl.col("boat_type") == t) for t in types}
+        rows += [
+            {"method": method, "boat_type": boat_type, "era": era.name} | _shift(group, era, yearly)
+            for boat_type, group in groups.items()
+            for era in ERAS[:-1]
+        ]
+    return frame_of(EraShifts, rows)
+
+
+def _years() -> pl.Expr:
+    return pl.col("season") - pl.col("season_before")
+
+
+def _shift(pairs: pl.DataFrame, era: Era, yearly: FloatArray) -> Row:
+    """Shift from an era to later ones, less ageing by its changes of ln Cw per year."""
+    across = pairs.filter(
+        pl.col("season_before").is_between(era.first, era.last) & (pl.col("season") > era.last)
+    )
+    ageing = estimate_median(yearly)
+    per_year, slowest, fastest = ageing or (0.0, 0.0, 0.0)
+    facts: Row = {"n": across.height}
+    if ageing is not None:
+        facts["ageing_per_year"] = per_year
+    years = across.select(_years()).to_series().to_numpy()
+    interval = estimate_median(across["ln_ratio"].to_numpy() - per_year * years)
+    if interval is None:
+        return facts | {"reason": "few_pairs"}
+    median, lo, hi = interval
+    aged = 0.5 * (fastest - slowest) * float(years.mean())
+    lo, hi = median - hypot(median - lo, aged), median + hypot(hi - median, aged)
+    return facts | {
+        "shift_ratio": exp(median),
+        "lo": exp(lo),
+        "hi": exp(hi),
+        "apart": lo > 0.0 or hi < 0.0,
+        "reason": "",
+    }
+
+
+def estimate_median(values: FloatArray | Sequence[float]) -> Interval | None:
+    """Return the median with its 95 % interval from order statistics, None of under six values.
+
+    Free of any distribution (David & Nagaraja 2003, Order Statistics, 7.1), so that a few tows
+    pulled askew or unreported alterations do not decide.
+    """
+    ordered, n = np.sort(values), len(values)
+    k = int(np.count_nonzero(scipy.special.bdtr(np.arange(n), n, 0.5) <= 0.025))
+    if k == 0:
+        return None
+    return Interval(float(np.median(ordered)), float(ordered[k - 1]), float(ordered[n - k]))

@@ -148,10 +148,15 @@ class Wind(_Options):
 class RunPoint(_Options):
     """How the samples of a window become one point."""
 
-    estimator: Literal["mean_of_ratios", "ratio_of_means"] = _option(
+    estimator: Literal["mean_of_ratios", "ratio_of_means", "ratio_of_robust_means"] = _option(
         "decided",
         say("S2017"),
-        but={"ratio_of_means": Basis("proposed", say("this project: a noisy log; appendix 3"))},
+        but={
+            "ratio_of_means": Basis("proposed", say("this project: a noisy log; appendix 3")),
+            "ratio_of_robust_means": Basis(
+                "proposed", say("this project: a noisy log, steering; appendix 3")
+            ),
+        },
     )
     inertia: Literal["none", "end_speeds"] = _option(
         "proposed", say("this project; appendix 6"), "none"
@@ -279,6 +284,8 @@ class Method(_Options):
 
     Attributes:
         title_en, description_en: in English; in a file without them as `title`, `description`.
+        published_in: the first and last season whose registers were published by it; None where
+            none was.
     """
 
     name: str
@@ -289,6 +296,7 @@ class Method(_Options):
     extends: str | None
     ranges: tuple[SeasonSteps, ...]
     validity: RegisterRule = RegisterRule()
+    published_in: tuple[int, int] | None = None
 
     def titled(self, language: str) -> str:
         """The title in `nl` or `en`."""
@@ -350,6 +358,20 @@ def _with_constants(steps: dict[str, Any]) -> dict[str, Any]:
     return {step: options for step, options in once.items() if options}
 
 
+def method_in_force(season: int, methods: Iterable[Method]) -> Method | None:
+    """Return the method by which the register of a season was published; None if none says so.
+
+    Of several the one that came into force last.
+    """
+    begins = {}
+    for method in methods:
+        if method.published_in is not None:
+            first, last = method.published_in
+            if first <= season <= last:
+                begins[first] = method
+    return begins[max(begins)] if begins else None
+
+
 def shipped_methods() -> tuple[str, ...]:
     """Names of the methods that come with the package, in alphabetical order."""
     files = resources.files("pipeline.methods").iterdir()
@@ -404,6 +426,9 @@ def parse_method(
     lineage = _lineage(_Reader(text, file_name, published), text_of)
     reader = lineage[-1]
     head = reader.head
+    published_in = None
+    if head.published_in is not None:
+        published_in = reader.seasons(head.published_in, "published_in")
     return Method(
         name=head.name,
         title=head.title,
@@ -413,6 +438,7 @@ def parse_method(
         extends=head.extends,
         ranges=_ranges(reader, [layer for one in lineage for layer in _layers(one)]),
         validity=_register_rule(lineage),
+        published_in=published_in,
     )
 
 
@@ -432,6 +458,7 @@ class _Head(_Options):
     description_en: str = ""
     extends: str | None = None
     seasons: str = "2009:"
+    published_in: str | None = None
     validity: dict[str, Any] = Field(default={}, alias="register")
     steps: dict[str, Any] = {}
     overrides: list[dict[str, Any]] = []

@@ -11,17 +11,18 @@ def method_text(method: Method) -> str:
 
     Reading it gives a method with the same content hash and register rule.
     """
+    head = {
+        "name": method.name,
+        "title": method.title,
+        "title_en": method.title_en,
+        "description": method.description,
+        "description_en": method.description_en,
+        "seasons": covered(method),
+    }
+    if method.published_in is not None:
+        head["published_in"] = range_text(*method.published_in)
     lines = [
-        *key_lines(
-            {
-                "name": method.name,
-                "title": method.title,
-                "title_en": method.title_en,
-                "description": method.description,
-                "description_en": method.description_en,
-                "seasons": covered(method),
-            }
-        ),
+        *key_lines(head),
         "",
         "[register]",
         *key_lines(method.validity.model_dump(exclude_none=True)),

@@ -15,7 +15,8 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
-from pipeline.uncertainty.misfit import fit_parabolas, shrink_to_boats
+from pipeline.tables.keys import LINE
+from pipeline.uncertainty.misfit import fit_parabolas, shrink_to_lines
 from pipeline.uncertainty.propagation import Assumed, pool_scatter
 
 DECLARED: Final = 1.0
@@ -40,7 +41,7 @@ def assumed_beside(factors: SeasonFactors | None) -> Assumed:
     """Return what remains assumed beside what the season factors show."""
     if factors is None:
         return Assumed()
-    return Assumed().beside_repeats(factors.tow_sd, factors.calibration_sd)
+    return Assumed().beside_repeats(factors.tow_sd, factors.tow_zero_n, factors.calibration_sd)
 
 
 def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
@@ -124,6 +125,7 @@ def make_facts(
     r = (bend / (1.0 + bend) * ratio**2).clip(-1.0, MAX_R)
     return pl.concat(at_speeds).with_columns(
         speed_m_s=ratio * pl.col("declared_speed_m_s"),
+        force_n=cw * (ratio * pl.col("declared_speed_m_s")) ** 2,
         kappa=2.0 / (1.0 - r),
         misfit_ratio=(pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt(),
         air_ratio=pl.col("net_air_kg_m") / cw,
@@ -146,8 +148,8 @@ def _boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, Flo
         speed_ratios,
         c.plan.which,
     )
-    boat = (tows.frame["fsn_no"].rank("dense") - 1).to_numpy().astype(np.int64)
-    return shrink_to_boats(by_tow, boat)
+    line = tows.frame.select(pl.struct(*LINE).rank("dense") - 1).to_series()
+    return shrink_to_lines(by_tow, line.to_numpy().astype(np.int64))
 
 
 def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:

@@ -46,6 +46,7 @@ class RunOptions(_Group):
         is_trimmed: only the steady window counts.
         highest_target_ratio: fastest run / declared speed.
         uses_mean_of_ratios: mean of F / v^2, else mean F / mean v squared.
+        is_robust: seconds that lie far from the others count less in those means.
         corrects_inertia: force that accelerated the boat is taken out.
         force_ratio: load cell reading / true force.
     """
@@ -53,6 +54,7 @@ class RunOptions(_Group):
     is_trimmed: BoolArray
     highest_target_ratio: FloatArray
     uses_mean_of_ratios: BoolArray
+    is_robust: BoolArray
     corrects_inertia: BoolArray
     force_ratio: FloatArray
 
@@ -123,6 +125,7 @@ class StepOptions:
                 is_trimmed=flags(lambda s: s.window.rule == "steady"),
                 highest_target_ratio=numbers(lambda s: s.runs.highest_target_ratio),
                 uses_mean_of_ratios=flags(lambda s: s.run_point.estimator == "mean_of_ratios"),
+                is_robust=flags(lambda s: s.run_point.estimator == "ratio_of_robust_means"),
                 corrects_inertia=flags(lambda s: s.run_point.inertia == "end_speeds"),
                 force_ratio=numbers(lambda s: s.force.ratio),
             ),

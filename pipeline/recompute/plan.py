@@ -77,12 +77,13 @@ class Plan:
     def average_windows(self) -> dict[str, Any]:
         """Return windows of the runs, and means over them, as `RunCache.average` gives them."""
         is_trimmed = self.run_options.run.is_trimmed
+        is_robust = self.run_options.run.is_robust
         averaging_s = self.run_options.wind.averaging_s
         found: dict[str, Any] = {}
-        pairs = sorted(set(zip(is_trimmed.tolist(), averaging_s.tolist(), strict=True)))
-        for trimmed, seconds in pairs or [(False, 0)]:
-            own = self.cache.average(self.tows, trimmed, seconds)
-            rows = (is_trimmed == trimmed) & (averaging_s == seconds)
+        of_runs = zip(is_trimmed.tolist(), averaging_s.tolist(), is_robust.tolist(), strict=True)
+        for trimmed, seconds, robust in sorted(set(of_runs)) or [(False, 0, False)]:
+            own = self.cache.average(self.tows, trimmed, seconds, robust)
+            rows = (is_trimmed == trimmed) & (averaging_s == seconds) & (is_robust == robust)
             found = {name: np.where(rows, own[name], found.get(name, own[name])) for name in own}
         return found
 

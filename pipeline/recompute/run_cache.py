@@ -21,14 +21,17 @@ class RunCache:
         self._windows: dict[tuple[object, ...], Windows] = {}
         self._means: dict[tuple[object, ...], dict[str, Any]] = {}
 
-    def average(self, tows: Tows, is_trimmed: bool, averaging_s: int) -> dict[str, Any]:
+    def average(
+        self, tows: Tows, is_trimmed: bool, averaging_s: int, is_robust: bool
+    ) -> dict[str, Any]:
         """Return `Windows.of_runs` and `window_means` of every run by name, (runs,) each."""
         key = (tuple(tows.frame["tow_id"]), is_trimmed)
         if key not in self._windows:
             find = steady_windows if is_trimmed else whole_runs
             self._windows[key] = find(tows.blocks)
         windows = self._windows[key]
-        if (*key, averaging_s) not in self._means:
-            means = window_means(tows.blocks, windows, averaging_s)
-            self._means[*key, averaging_s] = windows.of_runs | means
-        return self._means[*key, averaging_s]
+        averaged = (*key, averaging_s, is_robust)
+        if averaged not in self._means:
+            means = window_means(tows.blocks, windows, averaging_s, is_robust)
+            self._means[averaged] = windows.of_runs | means
+        return self._means[averaged]

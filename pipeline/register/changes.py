@@ -1,8 +1,8 @@
-"""What changes for a boat between two registers, in terms that crews notice, and why.
+"""What changes for a boat between two registers, and why.
 
-Compared are lines of the same boat and crew, at the old declared speed: resistance, power at that
-speed, and time over a distance at equal power. Which registers are compared, and what is known
-about their inputs and code, is not decided here.
+Lines of the same boat and crew are compared at the old declared speed: resistance, power, and time
+at equal power. The change is written as a product of factors with a cause each: first what the old
+line becomes under the new method (the old tow is re-based, step by step), then what remains.
 """
 
 import json
@@ -15,7 +15,7 @@ import polars as pl
 from pipeline.arrays import FloatArray
 from pipeline.assessment.seen import POWER_W
 from pipeline.choice import SAME_SHARE
-from pipeline.curve import cw
+from pipeline.curve import VALID_RATIO, cw
 from pipeline.races.power import curve_of_lines, speed_at_power
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import LINE
@@ -25,27 +25,27 @@ from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 
 SAME_RATIO: Final = 5e-4
-"""A difference up to 0.05 % counts as the same (docs/method-details.md, 11; inferred)."""
+"""A curve that differs by at most 0.05 % anywhere between 85 and 115 % of the declared speed is the
+same curve (docs/method-details.md, 11; inferred)."""
 
 NO_FACTOR: Final = SAME_SHARE
 """A factor this near to 1 is rounding and is not listed as a cause."""
 
 RACE_S: Final = 7200.0
-"""The race in which a change is expressed in seconds."""
+"""Duration of the race in which a change is expressed in seconds."""
 
 PART_SCHEMA: Final = {
     **{name: dtypes(Register)[name] for name in LINE},
     "cause": pl.String(),
     **{name: dtypes(CorrectionSteps)[name] for name in ("step", "factor")},
 }
-BOTH: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s", "rank", "tow_id")
-"""What is said of a line under both editions."""
-
-NUMBERS: Final = ("tow_id", *BOTH[:4], "cw_lo_kg_m", "cw_hi_kg_m")
-
 NO_PARTS: Final = pl.DataFrame(schema=PART_SCHEMA)
-"""Parts of changes whose cause is known: per line and cause a factor on Cw; `step` where the cause
-is the method."""
+"""Known causes: per line and cause a factor on Cw; `step` where the cause is the method."""
+
+SHOWN: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s", "rank", "tow_id")
+"""Columns of both registers that stand beside each other in a comparison."""
+
+COMPARED: Final = ("tow_id", *SHOWN[:4], "cw_lo_kg_m", "cw_hi_kg_m")
 
 
 def register_changes(
@@ -54,7 +54,7 @@ def register_changes(
     parts: pl.DataFrame = NO_PARTS,
     grounds: pl.DataFrame | None = None,
 ) -> pl.DataFrame:
-    """Rows of the table `register_changes`: what `compare_lines` says without both numbers."""
+    """Return the columns of the table `register_changes` of `compare_lines`."""
     return compare_lines(old, new, parts, grounds).select(RegisterChanges.column_names())
 
 
@@ -64,82 +64,106 @@ def compare_lines(
     parts: pl.DataFrame = NO_PARTS,
     grounds: pl.DataFrame | None = None,
 ) -> pl.DataFrame:
-    """Compares two editions line by line.
-
-    A change is the product of its known parts and of one factor for everything else, whose name
-    the caller knows too.
+    """Compare two registers line by line.
 
     Args:
         old, new: rows of the table `register`, each of one edition.
-        parts: what is known of the causes, in order; `PART_SCHEMA`.
-        grounds: per line the `ground` of what the parts do not explain; without it `printed` where
-            a line names no tow, `tow` where another one counts, else `method`.
+        parts: factors of known causes, in order; columns of `PART_SCHEMA`.
+        grounds: per line the `ground`, which names the factor that the parts leave over. Without
+            it that is `printed` where a line has no tow, `tow` where another tow counts, else
+            `method`.
 
     Returns:
-        The columns of the table `register_changes`, per line with a curve in either edition.
-        `causes` is JSON: a list of `cause`, `factor` and, where the cause is `method`, the `step`;
-        the factors multiply to `cw_ratio`. A ratio is null where the new curve says nothing about
-        the old declared speed.
+        Per line with a curve in either register the columns of the table `register_changes`.
+        `causes` is a JSON list of `cause`, `factor` and, for a method, `step`; the factors multiply
+        to `cw_ratio`. Added are:
 
-        Beside them tow, A, B, Cw, declared speed and rank in both (`old_`, `new_`); the power per
-        rower at the old declared speed; the seconds that the new register gives in a two-hour race:
-        more time for the same power counts as gain. `exceeds_interval`: whether the change is
-        larger than the 95 % intervals of both together; of two numbers from one tow, which share
-        its errors, whether it is larger than that of the old one; null where an interval is not
-        known. The rank is among all boats of the class with a curve: 1 is the fastest at equal
-        power per rower.
+        - `cw_ratio_slow`, `cw_ratio_fast`: new / old Cw at 85 and 115 % of the old declared speed;
+          a line is `same` only where both curves agree over that range;
+        - `old_` and `new_` tow, A, B, Cw, declared speed and rank: the place in the class at equal
+          power per rower, 1 is the fastest;
+        - `old_power_w`, `new_power_w` per rower at the old declared speed;
+        - `gain_in_two_hours_s`: seconds that the new register gives in a race of two hours;
+        - `exceeds_interval`: whether the change is larger than the 95 % intervals of both; of two
+          numbers from one tow, which share its errors, than that of the old one. Null where an
+          interval is not known.
+
+        A ratio is null where the new curve does not reach that speed.
     """
-    pairs = _pairs(old, new)
-    both = pairs["both"].to_numpy()
-    cw_ratio, time_ratio = _ratios(pairs)
-    compared = both & np.isfinite(cw_ratio)
-    kinds = [
-        both & (np.abs(cw_ratio - 1.0) <= SAME_RATIO),
-        both,
-        pairs["cw_kg_m"].is_null().to_numpy(),
-    ]
-    change = np.select(kinds, ["same", "changed", "added"], "removed")
-    power = power_per_rower_w(pairs["cw_kg_m"], pairs["declared_speed_m_s"], pairs["rowers"])
-    of_one_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False).to_numpy()
-    of_old = _half_width(pairs, "")
-    width = np.where(of_one_tow, of_old, np.hypot(of_old, _half_width(pairs, "_new")))
-    exceeds = np.abs(np.log(np.where(compared, cw_ratio, 1.0))) > width
+    pairs = (
+        _rank(old)
+        .join(
+            _rank(new),
+            on=LINE,
+            how="full",
+            coalesce=True,
+            suffix="_new",
+            maintain_order="left_right",
+        )
+        .sort(LINE)
+    )
+    in_both = (pairs["cw_kg_m"].is_not_null() & pairs["cw_kg_m_new"].is_not_null()).to_numpy()
+    speed = pairs["declared_speed_m_s"].fill_null(1.0).to_numpy()
+    old_curve = _fill_curve(*curve_of_lines(pairs))
+    new_curve = _fill_curve(*curve_of_lines(pairs, "_new"))
 
-    def known(name: str, values: np.ndarray, where: np.ndarray = compared) -> pl.Expr:
-        return pl.when(pl.Series(where)).then(pl.Series(values)).alias(name)
+    def ratio_at(share: float) -> FloatArray:
+        ratio = cw(*new_curve, share * speed) / cw(*old_curve, share * speed)
+        return np.where(in_both, ratio, np.nan)
+
+    slow, declared, fast = ratio_at(VALID_RATIO[0]), ratio_at(1.0), ratio_at(VALID_RATIO[1])
+    compared = in_both & np.isfinite(declared)
+    power = np.where(compared, cw(*old_curve, speed), 0.0) * speed**3
+    same_power_speed = speed_at_power(*new_curve, power)
+    time_ratio = speed / np.where(compared & (same_power_speed > 0), same_power_speed, np.nan)
+
+    largest = np.max(np.abs(np.nan_to_num(np.stack([slow, declared, fast]) - 1.0, nan=np.inf)), 0)
+    change = np.select(
+        [in_both & (largest <= SAME_RATIO), in_both, pairs["cw_kg_m"].is_null().to_numpy()],
+        ["same", "changed", "added"],
+        "removed",
+    )
+    old_width, new_width = _half_width(pairs, ""), _half_width(pairs, "_new")
+    is_same_tow = (pairs["tow_id"] == pairs["tow_id_new"]).fill_null(False).to_numpy()
+    width = np.where(is_same_tow, old_width, np.hypot(old_width, new_width))
+    exceeds = np.abs(np.log(np.where(compared, declared, 1.0))) > width
+    old_power = power_per_rower_w(pairs["cw_kg_m"], speed, pairs["rowers"])
+    causes = _explain(pairs, np.where(compared, declared, np.nan), parts, grounds)
+
+    def known(values: FloatArray | np.ndarray, where: np.ndarray = compared) -> pl.Expr:
+        return pl.when(pl.Series(where)).then(pl.Series(values))
 
     return pairs.select(
         pl.lit(old["edition"].first(), pl.String).alias("from_edition"),
         pl.lit(new["edition"].first(), pl.String).alias("to_edition"),
         *LINE,
         pl.Series("change", change, pl.String),
-        known("cw_ratio", cw_ratio),
-        known("power_ratio", cw_ratio),
-        known("time_ratio", time_ratio),
-        pl.Series("causes", _causes(pairs, compared, cw_ratio, parts, grounds), pl.String),
-        *(
-            pl.col(f"{name}{suffix}").alias(f"{side}_{name}")
-            for name in BOTH
-            for side, suffix in (("old", ""), ("new", "_new"))
-        ),
-        pl.Series("old_power_w", power).fill_nan(None),
-        known("new_power_w", power * cw_ratio),
-        known("gain_in_two_hours_s", RACE_S * (time_ratio - 1.0)),
-        known("exceeds_interval", exceeds, compared & np.isfinite(width)),
+        known(declared).alias("cw_ratio"),
+        known(declared).alias("power_ratio"),
+        known(time_ratio).alias("time_ratio"),
+        pl.Series("causes", causes, pl.String),
+        known(slow, np.isfinite(slow)).alias("cw_ratio_slow"),
+        known(fast, np.isfinite(fast)).alias("cw_ratio_fast"),
+        *(pl.col(name).alias(f"old_{name}") for name in SHOWN),
+        *(pl.col(f"{name}_new").alias(f"new_{name}") for name in SHOWN),
+        pl.Series("old_power_w", old_power).fill_nan(None),
+        known(old_power * declared).alias("new_power_w"),
+        known(RACE_S * (time_ratio - 1.0)).alias("gain_in_two_hours_s"),
+        known(exceeds, compared & np.isfinite(width)).alias("exceeds_interval"),
     )
 
 
 def largest_first(lines: pl.DataFrame) -> pl.DataFrame:
-    """Lines by the size of their change, whatever its sign; those without a ratio on top."""
+    """Sort lines by the size of their change, whatever its sign; those without a ratio on top."""
     size = pl.col("cw_ratio").log().abs().fill_null(math.inf)
     return lines.sort(size, *LINE, descending=[True, *(False for _ in LINE)])
 
 
 def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
-    """The steps of a ladder as parts of the changes of the lines whose tow they are of.
+    """Return the steps of a ladder as parts of the changes of the lines whose tow they are of.
 
     Args:
-        register: lines with their `tow_id`.
+        register: lines of the old register, with their `tow_id`: its tow is re-based first.
         ladder: `tow_id`, `position`, `step`, `factor`.
     """
     steps = (
@@ -147,95 +171,58 @@ def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame
         .join(ladder, on="tow_id", maintain_order="left")
         .sort(*LINE, "position")
     )
-    return steps.select(
-        *LINE, pl.lit("method").alias("cause"), "step", pl.col("factor").cast(pl.Float64)
-    )
+    factor = pl.col("factor").cast(pl.Float64)
+    return steps.select(*LINE, pl.lit("method").alias("cause"), "step", factor)
 
 
-def _pairs(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """Lines with a curve in either edition, sorted; `both` where there is one in each."""
-    pairs = _ranked(old).join(
-        _ranked(new),
-        on=LINE,
-        how="full",
-        coalesce=True,
-        suffix="_new",
-        maintain_order="left_right",
-    )
-    both = pl.col("cw_kg_m").is_not_null() & pl.col("cw_kg_m_new").is_not_null()
-    return pairs.with_columns(both=both).sort(LINE)
+def _fill_curve(a: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A and s = 1/B^2, with a harmless curve where a register has no line."""
+    has_curve = np.isfinite(a) & np.isfinite(s)
+    return np.where(has_curve, a, 1.0), np.where(has_curve, s, 0.0)
 
 
-def _ratios(pairs: pl.DataFrame) -> tuple[FloatArray, FloatArray]:
-    """New / old Cw at the old declared speed, and new / old time at the power of that speed.
-
-    NaN where either has no curve, or a curve says nothing about that speed.
-    """
-    cw_ratio, time_ratio = (np.full(pairs.height, np.nan) for _ in range(2))
-    both = pairs["both"].to_numpy()
-    lines = pairs.filter("both")
-    speed = lines["declared_speed_m_s"].to_numpy()
-    old, new = curve_of_lines(lines), curve_of_lines(lines, "_new")
-    before, after = cw(*old, speed), cw(*new, speed)
-    sound = np.isfinite(before) & np.isfinite(after)
-    power = np.where(sound, before, 0.0) * speed**3
-    same_power_speed = np.where(sound, speed_at_power(*new, power), 1.0)
-    cw_ratio[both] = np.where(sound, after, np.nan) / np.where(sound, before, 1.0)
-    time_ratio[both] = np.where(sound, speed / same_power_speed, np.nan)
-    return cw_ratio, time_ratio
-
-
-def _ranked(register: pl.DataFrame) -> pl.DataFrame:
-    """Lines with a curve, and their rank by speed at equal power."""
-    lines = register.drop_nulls("cw_kg_m").select(*LINE, *NUMBERS)
-    power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64)
-    speed = speed_at_power(*curve_of_lines(lines), (power * lines["rowers"]).to_numpy())
+def _rank(register: pl.DataFrame) -> pl.DataFrame:
+    """Lines with a curve, and their rank by speed at equal power within the class."""
+    lines = register.drop_nulls("cw_kg_m").select(*LINE, *COMPARED)
+    power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64) * lines["rowers"]
+    speed = pl.Series("speed", speed_at_power(*curve_of_lines(lines), power.to_numpy()))
     rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
-    return lines.with_columns(speed=pl.Series(speed)).with_columns(rank=rank)
+    return lines.with_columns(speed).with_columns(rank=rank).drop("speed")
 
 
 def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:
     """Half the 95 % interval of ln Cw; infinite where it is not known."""
-    low, high = (pairs[f"cw_{end}_kg_m{suffix}"].to_numpy() for end in ("lo", "hi"))
+    low = pairs[f"cw_lo_kg_m{suffix}"].to_numpy()
+    high = pairs[f"cw_hi_kg_m{suffix}"].to_numpy()
     known = np.isfinite(low) & np.isfinite(high) & (low > 0)
     ratio = np.where(known, high, 1.0) / np.where(known, low, 1.0)
     return np.where(known, 0.5 * np.log(ratio), np.inf)
 
 
-def _causes(
-    pairs: pl.DataFrame,
-    compared: np.ndarray,
-    ratio: FloatArray,
-    parts: pl.DataFrame,
-    grounds: pl.DataFrame | None,
+def _explain(
+    pairs: pl.DataFrame, ratios: FloatArray, parts: pl.DataFrame, grounds: pl.DataFrame | None
 ) -> list[str]:
-    """The causes of each change with their factors on Cw, as JSON."""
+    """The causes of each change as JSON: known parts, and a factor for what remains."""
     moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
-    of_line = moved.group_by(LINE, maintain_order=True).agg(
-        pl.struct("cause", "step", "factor").alias("parts")
-    )
-    known = pairs.select(LINE).join(of_line, on=LINE, how="left", maintain_order="left")["parts"]
-    rests = _grounds(pairs, grounds)
-    return [
-        json.dumps(_factors(parts_of_line or [], float(factor), rest) if both else [])
-        for parts_of_line, both, factor, rest in zip(
-            known.to_list(), compared, ratio, rests, strict=True
-        )
-    ]
+    parts_of = moved.rows_by_key(LINE, named=True)
+    grounds = grounds if grounds is not None else pl.DataFrame(schema=[*LINE, "ground"])
+    ground_of = {tuple(line): ground for *line, ground in grounds.select(*LINE, "ground").rows()}
+    explained = []
+    for pair, ratio in zip(pairs.iter_rows(named=True), ratios.tolist(), strict=True):
+        causes: list[Row] = []
+        line = tuple(pair[name] for name in LINE)
+        if math.isfinite(ratio):
+            known = parts_of.get(line, ())
+            causes = [{k: v for k, v in part.items() if v is not None} for part in known]
+            remainder = ratio / math.prod(cause["factor"] for cause in causes)
+            if abs(remainder - 1.0) > NO_FACTOR or not causes:
+                ground = ground_of.get(line) or _default_ground(pair)
+                causes.append({"cause": ground, "factor": remainder})
+        explained.append(json.dumps(causes))
+    return explained
 
 
-def _grounds(pairs: pl.DataFrame, grounds: pl.DataFrame | None) -> list[str]:
-    if grounds is None:
-        grounds_by_tow = {None: "printed", True: "method", False: "tow"}
-        return [grounds_by_tow[same] for same in pairs["tow_id"] == pairs["tow_id_new"]]
-    named = pairs.select(LINE).join(grounds, on=LINE, how="left", maintain_order="left")
-    return named["ground"].to_list()
-
-
-def _factors(parts: list[Row], total: float, rest: str) -> list[Row]:
-    """The known parts, and one factor for the rest, which multiply to the total."""
-    causes = [{k: v for k, v in part.items() if v is not None} for part in parts]
-    left = total / math.prod(part["factor"] for part in parts)
-    if abs(left - 1.0) > NO_FACTOR or not parts:
-        causes.append({"cause": rest, "factor": left})
-    return causes
+def _default_ground(pair: Row) -> str:
+    if pair["tow_id"] is None or pair["tow_id_new"] is None:
+        return "printed"
+    return "method" if pair["tow_id"] == pair["tow_id_new"] else "tow"

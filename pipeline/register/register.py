@@ -32,8 +32,23 @@ CURVE_COLUMNS: Final = (
     "cw_lo_kg_m",
     "cw_hi_kg_m",
     "flags",
+    "basis",
 )
+CARRIED_COLUMNS: Final = (
+    "tow_date",
+    "valid_until",
+    "declared_speed_m_s",
+    "a_kg_m",
+    "b_m_s",
+    "cw_kg_m",
+    "basis",
+)
+"""What a printed line says, of those."""
+
 CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+MEASURED: Final = "measured"
+"""The basis of a line that was computed from a tow."""
+
 DOUBTED: Final = "doubted"
 """Status of a line whose tows the rest of the archive rules out."""
 
@@ -96,8 +111,9 @@ def draft_register(
     on_date: dt.date,
     rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
+    carried: pl.DataFrame | None = None,
 ) -> pl.DataFrame:
-    """One line per boat and crew under one method: the newest sound tow, valid or not.
+    """Return one line per boat and crew under one method: the newest sound tow, valid or not.
 
     Args:
         curves: rows of the warehouse's `curves` of one method.
@@ -106,6 +122,7 @@ def draft_register(
         on_date: the day on which validity is judged; later tows do not exist yet.
         rule: how long a tow counts, and which of its estimates.
         decisions: `tow_id` and `verdict`: a tow to `exclude`, or to `prefer` over newer ones.
+        carried: printed lines of tows without samples (`pipeline.register.printed.carried_lines`).
 
     Returns:
         Rows of the table `register`, `as_of` that day. Their status is `valid`, `expired`,
@@ -113,21 +130,12 @@ def draft_register(
         rest of the archive rules its tows out; a person may look and prefer one. `excluded`: by
         decision, and there is no other tow.
     """
-    towed = _towed(as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
+    made_by_then = tows.filter(pl.col("tow_date") <= on_date)
+    towed = _towed(as_ruled(curves, rule), made_by_then)
     curved = towed.filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    chosen = (
-        _in_order(sound, rule, decisions)
-        .group_by(LINE, maintain_order=True)
-        .last()
-        .with_columns(
-            pl.when(pl.col("valid_until") >= on_date)
-            .then(pl.lit("valid"))
-            .otherwise(pl.lit("expired"))
-            .alias("status")
-        )
-        .select(*LINE, *CURVE_COLUMNS, "status")
-    )
+    history = lines_of_all_days(curves, made_by_then, rule, decisions, carried)
+    chosen = lines_on_days(history, [on_date]).drop("as_of")
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(
         *LINE[:-1], pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
     )
@@ -135,7 +143,10 @@ def draft_register(
         (sound.join(chosen, on=LINE, how="anti"), "excluded"),
         (curved.join(sound, on=LINE, how="anti"), DOUBTED),
         (towed.join(curved, on=LINE, how="anti"), "rejected"),
-        (crews.join(towed, on="fsn_no", how="anti"), "never_towed"),
+        (
+            crews.join(towed, on="fsn_no", how="anti").join(chosen, on="fsn_no", how="anti"),
+            "never_towed",
+        ),
     ]
     lines = [
         frame.select(LINE).unique().with_columns(pl.lit(status).alias("status"))
@@ -150,21 +161,56 @@ def lines_of_all_days(
     tows: pl.DataFrame,
     rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
+    carried: pl.DataFrame | None = None,
 ) -> pl.DataFrame:
-    """Every line that a register of one method had at some time.
-
-    In such an order that on any day the last one counts whose `tow_date` is not after it, as in
-    `draft_register`.
+    """Return every line that a register of one method had at some time.
 
     Args:
-        curves, tows, rule, decisions: as for `draft_register`.
+        curves, tows, rule, decisions, carried: as for `draft_register`.
 
     Returns:
-        `LINE` and `CURVE_COLUMNS` of every tow that can count.
+        `LINE` and `CURVE_COLUMNS` of every tow that can count, in such an order that on any day the
+        last one counts whose `tow_date` is not after it.
     """
     curved = _towed(as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    return _in_order(sound, rule, decisions).select(*LINE, *CURVE_COLUMNS)
+    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
+    is_preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
+    until = valid_until(pl.col("tow_date"), rule).alias("valid_until")
+    lines = allowed.with_columns(until, basis=pl.lit(MEASURED), is_preferred=is_preferred)
+    if carried is not None:
+        printed = carried.select(*LINE, *CARRIED_COLUMNS)
+        lines = pl.concat([lines, printed], how="diagonal_relaxed")
+    ordered = lines.sort(
+        pl.col("is_preferred").fill_null(value=False), "tow_date", "tow_id", maintain_order=True
+    )
+    return ordered.select(*LINE, *CURVE_COLUMNS)
+
+
+def lines_on_days(
+    history: pl.DataFrame, days: Sequence[dt.date], key: Sequence[str] = LINE
+) -> pl.DataFrame:
+    """Return the lines that count on each of some days.
+
+    Args:
+        history: what a register had at some time, in the order of `lines_of_all_days`.
+        days: the days.
+        key: the columns that tell lines apart; with `edition`, those of several registers.
+
+    Returns:
+        The columns of `history`, with the day as `as_of`, and `status`: `valid` or `expired`.
+    """
+    days_of = pl.DataFrame({"as_of": days}, schema={"as_of": pl.Date})
+    begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= pl.col("as_of"))
+    is_expired = (pl.col("valid_until") < pl.col("as_of")).fill_null(False)
+    status = pl.when(is_expired).then(pl.lit("expired")).otherwise(pl.lit("valid"))
+    return (
+        history.join(days_of, how="cross", maintain_order="left")
+        .filter(begun)
+        .group_by("as_of", *key, maintain_order=True)
+        .last()
+        .with_columns(status.alias("status"))
+    )
 
 
 def tow_days(tows: pl.DataFrame) -> pl.DataFrame:
@@ -223,15 +269,6 @@ def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
     return curves.join(
         tows.select("tow_id", "tow_date", thwart), on="tow_id", maintain_order="left"
-    )
-
-
-def _in_order(sound: pl.DataFrame, rule: RegisterRule, decisions: pl.DataFrame) -> pl.DataFrame:
-    """Tows that may count, with their last day; the one that takes precedence comes last."""
-    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
-    preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
-    return allowed.sort(preferred, "tow_date", "tow_id").with_columns(
-        valid_until(pl.col("tow_date"), rule).alias("valid_until")
     )
 
 

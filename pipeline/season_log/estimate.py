@@ -27,7 +27,8 @@ class SeasonFactors:
         covariance: of ln factor between the determined rows of `factors`, in their order.
         tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
         calibration_sd: the same of tows calibrated on dGPS.
-        tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
+        tow_sd: standard deviation of ln Cw of a tow beyond its random part, its log and its zero.
+        tow_zero_n: standard deviation of the load cell's zero from tow to tow, N.
         ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
         drift_sd: standard deviation of what a boat drifts from that in a year.
         tows, weights: what was estimated of each tow (`tow_estimates.estimate_tows`).
@@ -39,6 +40,7 @@ class SeasonFactors:
     tow_log_sd: dict[int, float]
     calibration_sd: float
     tow_sd: float
+    tow_zero_n: float
     ageing_per_year: float
     ageing_sd: float
     drift_sd: float
@@ -133,8 +135,9 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         factors=factors,
         covariance=covariance,
         tow_log_sd=dict(zip(PRIORS.era_starts, sd[3 : 3 + eras], strict=True)),
-        calibration_sd=sd[-2],
+        calibration_sd=sd[3 + eras],
         tow_sd=sd[0],
+        tow_zero_n=sd[-2],
         ageing_per_year=float(fit.value[ageing]),
         ageing_sd=float(np.sqrt(fit.covariance[ageing, ageing])),
         drift_sd=sd[-1],

@@ -73,14 +73,14 @@ class Model:
         """Prior means of the ln variances, in the order of `variance_names`."""
         p = self.priors
         log_sd = [p.tow_log_sd] * len(p.era_starts)
-        sd = [p.tow_sd, p.tow_bend_sd, p.tow_gps_sd, *log_sd, p.calibration_sd, p.drift_sd]
-        return 2.0 * np.log(sd)
+        of_numbers = [p.tow_sd, p.tow_bend_sd, p.tow_gps_sd]
+        return 2.0 * np.log([*of_numbers, *log_sd, p.calibration_sd, p.tow_zero_n, p.drift_sd])
 
 
 def variance_names(priors: Priors) -> list[str]:
     """Return the names of the variance components, in the order of all arrays of variances."""
     eras = [f"log between tows from {first}" for first in priors.era_starts]
-    return ["ln Cw", "bend", "GPS", *eras, "anchored log", "drift per year"]
+    return ["ln Cw", "bend", "GPS", *eras, "anchored log", "zero", "drift per year"]
 
 
 def build_model(archive: Archive, priors: Priors) -> Model:

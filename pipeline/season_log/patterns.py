@@ -89,13 +89,15 @@ def variance_parts(
 
     Args:
         variance: (v,) of ln Cw, bend and GPS between tows, of the log between tows per era and of
-            anchored tows, and of the drift per year (`fit.variance_names`).
+            anchored tows, of the load cell's zero between tows [N²], and of the drift per year
+            (`fit.variance_names`).
 
     Returns:
         (v, b, 3 T, 3 T). It is also the derivative of the covariance by ln variance.
     """
     boats, tows = group.tow.shape
     by_log = linear.by_channel["log"][group.tow]
+    by_zero = linear.by_channel["zero"][group.tow]
     by_level = linear.by_boat[group.tow][..., 0]
     parts = np.zeros((len(variance), boats, tows, 3, tows, 3))
     for k in range(tows):
@@ -104,6 +106,8 @@ def variance_parts(
         component = 3 + archive.log_variance[group.tow[:, k]]
         of_log = by_log[:, k, :, None] * by_log[:, k, None, :]
         parts[component, np.arange(boats), k, :, k] = variance[component, None, None] * of_log
+        of_zero = by_zero[:, k, :, None] * by_zero[:, k, None, :]
+        parts[-2, :, k, :, k] = variance[-2] * of_zero
     drift = variance[-1] * group.shared_years
     of_drift = by_level[:, :, :, None, None] * drift[:, :, None, :, None]
     parts[-1] = of_drift * by_level[:, None, None, :, :]

@@ -42,6 +42,7 @@ class Priors:
     tow_sd: float = 0.0065  # ln Cw; fitted
     tow_bend_sd: float = 0.01  # q; fitted
     tow_gps_sd: float = 0.008  # ln(GPS / log); fitted
+    tow_zero_n: float = 1.0  # N, zero of the load cell; fitted
     ln_variance_sd: float = 1.5  # every ln variance; inferred: counts as one repeat tow
 
     # Bend of all boats of a season without dGPS. A hull is no hyperbola, so bends towed at speeds

@@ -24,10 +24,19 @@ from pipeline.steps.wind import (
     mean_angle_deg,
     with_averaged_wind,
 )
-from pipeline.steps.window import END_SECONDS, Windows
+from pipeline.steps.window import END_SECONDS, Windows, robust_moments
 
 ADDED_MASS_RATIO: Final = 0.08
 """Water that is accelerated with the boat, as a share of its mass (inferred; method-details, 6)."""
+
+HUBER_SD: Final = 1.345
+"""Robust standard deviations within which a second counts in full: 95 % efficient where seconds are
+normal (Holland & Welsch 1977)."""
+HUBER_ITERATIONS: Final = 5
+MIN_SECONDS_SD_RATIO: Final = 0.001
+"""Least standard deviation of seconds, as a share of their median: below it they are equal."""
+MIN_WEIGHT: Final = 1e-9
+SCATTER_SUMS: Final = {"log1_cw", "log1_cw2"}
 
 WETTED_SURFACE_RATIO: Final = 3.0
 """Wetted surface / sqrt(displaced volume x waterline length). Stated assumption: the Delft formula
@@ -62,7 +71,7 @@ class RunMeans:
     wind_angle_deg: FloatArray
 
     def with_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
-        """Return these means for a load cell that reads true force x factor + zero."""
+        """Return these means for a load cell that reads true force x factor + zero, (runs,)."""
         zero = zero_n / _or_one(self.speed_m_s) ** 2
         return replace(self, gross_kg_m=(self.gross_kg_m - zero) / factor)
 
@@ -71,11 +80,15 @@ class RunMeans:
         return replace(self, air=self.air.times(scale**-2.0))
 
 
-def window_means(blocks: RunBlocks, windows: Windows, averaging_s: int) -> dict[str, FloatArray]:
+def window_means(
+    blocks: RunBlocks, windows: Windows, averaging_s: int, is_robust: bool
+) -> dict[str, FloatArray]:
     """Return means over the window of every run of what is summed in blocks, shape (runs,) each.
 
     Args:
         averaging_s: seconds over which the wind of air terms is averaged; 0 takes it as it is.
+        is_robust: whether seconds count by `weigh_seconds`. Mean and scatter of F / v² itself,
+            `SCATTER_SUMS`, are over all samples in any case.
 
     Returns:
         The means by `SUM_NAMES`, and as `seconds_sd` the standard deviation of the means of
@@ -83,8 +96,34 @@ def window_means(blocks: RunBlocks, windows: Windows, averaging_s: int) -> dict[
     """
     averaged = with_averaged_wind(blocks, averaging_s) if averaging_s else blocks
     sums = WindowSums(averaged, windows.mask)
-    means = {name: sums.mean(name) for name in SUM_NAMES}
+    weighted = set(SUM_NAMES) - SCATTER_SUMS if is_robust else set()
+    means = {name: sums.mean(name) for name in SUM_NAMES if name not in weighted}
+    if is_robust:
+        weight = weigh_seconds(blocks, windows.mask)
+        samples = np.maximum((weight * blocks.n).sum(axis=1), MIN_WEIGHT)
+        means |= {name: (weight * averaged[name]).sum(axis=1) / samples for name in weighted}
     return means | {"seconds_sd": _sd_of_seconds(blocks, windows.mask)}
+
+
+def weigh_seconds(blocks: RunBlocks, window: BoolArray) -> FloatArray:
+    """Return the weight of each second of a run, (runs, seconds); 0 outside its window.
+
+    Huber's weights for a location (Huber 1964), k / |z| beyond k robust standard deviations z of
+    the seconds' mean F / v². A steering peak in the middle of a run cannot be cut and always pushes
+    upwards; a second that it spoils counts less. All quantities of a run are averaged with the
+    same weights, so that a gust is taken off with the wind that made it.
+    """
+    is_measured = window & (blocks.n > 0)
+    per_second = blocks["log1_cw"] / np.maximum(blocks.n, 1.0)
+    centre, sd = robust_moments(per_second, is_measured)
+    sd = np.maximum(sd, MIN_SECONDS_SD_RATIO * np.abs(centre))
+    weight = is_measured.astype(np.float64)
+    for _ in range(HUBER_ITERATIONS):
+        distance = np.abs(per_second - centre) / np.where(sd > 0, sd, 1.0)
+        weight = np.where(is_measured, HUBER_SD / np.maximum(distance, HUBER_SD), 0.0)
+        total = np.maximum(weight.sum(axis=1, keepdims=True), MIN_WEIGHT)
+        centre = (weight * per_second).sum(axis=1, keepdims=True) / total
+    return np.asarray(weight)
 
 
 def _sd_of_seconds(blocks: RunBlocks, window: BoolArray) -> FloatArray:

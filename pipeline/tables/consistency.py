@@ -5,37 +5,80 @@ from pipeline.tables.bases import PerCrewTow, PerMethod
 from pipeline.tables.declare import dy
 
 
-class TypeLines(PerMethod):
-    """How a quantity follows weight, length or tow speed within a type."""
+class TypeConsistency(PerMethod):
+    """Are boats of a type equal? One model per type and quantity: class, weight, tow speed, boat.
 
-    tows = column.text("all, or newest (of each boat and crew)", primary_key=True)
+    By the newest tow of each boat and crew; ratios are of the quantity.
+    """
+
     boat_type = column.text("type of boat; unknown: no claims", primary_key=True)
-    quantity = column.text("b_m_s, a_kg_m, cw_standard_kg_m or ln_cw_standard", primary_key=True)
-    explaining = column.text(
-        "weight_kg, declared_speed_m_s, waterline_length_m or ln_displacement", primary_key=True
+    quantity = column.text(
+        "cw_standard_kg_m, b_m_s or a_kg_m",
+        primary_key=True,
+        regex="^(cw_standard_kg_m|b_m_s|a_kg_m)$",
     )
-    within = column.text("men or women against tow speed; else all", primary_key=True)
     standard_speed_m_s = column.speed("common speed: median declared speed of the type's tows")
-    n = column.count("tows")
+    n = column.count("tows compared: of Cw only those whose curve counts at that speed")
     n_boats = column.count("boats")
-    slope = column.optional("quantity / explaining", "slope of the line")
-    slope_lo = column.lower("quantity / explaining")
-    slope_hi = column.upper("quantity / explaining")
-    r2 = column.optional("1", "1 - squares about line / about crews' means", min=0, max=1)
-    residual_sd_ratio = column.optional("1", "spread about the line / mean; of ln Cw itself", min=0)
-    reason = column.text("why none: no_type, few_boats, equal_values, not_settled; else empty")
+    n_men = column.count("tows of men's crews behind slopes and classes", nullable=True)
+    n_women = column.count("tows of women's crews", nullable=True)
+    mean = column.optional("as quantity", "mean of the type")
+    verdict = column.text(
+        "equal, differ or open; else why nothing is said: no_type, few_boats, no_scatter, no_b"
+    )
+    difference_that_matters = column.number(
+        "1", "spread between boats from which they are not equal; the federation sets it", min=0
+    )
+    spread_ratio = column.optional("1", "true standard deviation between boats", min=0)
+    spread_lo = column.optional("1", "its 95 % lower bound", min=0)
+    spread_hi = column.optional("1", "its 95 % upper bound; empty: none", min=0)
+    error_ratio = column.optional("1", "standard deviation of the measuring error", min=0)
+    repeat_pairs = column.count("pairs of repeat tows, of all types, that the error rests on")
+    noise_ratio = column.number(
+        "1", "error by those pairs / by runs and intervals, where it is smaller", min=0, max=1
+    )
+    zero_sd_n = column.number(
+        "N", "what those pairs add to each tow, as a zero error of the load cell", min=0
+    )
+    season_sd = column.number("1", "standard deviation of y that tows of a season share", min=0)
+    rest_verdict = column.text("the verdict without the boats that stand out")
+    outside = column.texts("boats that stand out, each against all others; slopes are without them")
+    farthest = column.fsn_no(nullable=True)
+    farthest_ratio = column.optional(
+        "1", "quantity of the boat farthest from what the others predict / as predicted", min=0
+    )
+    farthest_ratio_lo = column.lower("1", min=0)
+    farthest_ratio_hi = column.upper("1", min=0)
+    women_ratio = column.optional("1", "women's crews / men's, at one weight of the boat", min=0)
+    women_ratio_lo = column.lower("1", min=0)
+    women_ratio_hi = column.upper("1", min=0)
+    weight_n = column.count("tows behind the slope on weight", nullable=True)
+    weight_n_boats = column.count("boats behind it", nullable=True)
+    weight_verdict = column.text("rises, falls, none or open; else why there is no slope")
+    weight_slope = column.optional("1", "relative change for 100 kg more boat")
+    weight_slope_lo = column.lower("1")
+    weight_slope_hi = column.upper("1")
+    weight_r2 = column.optional(
+        "1", "share of the spread within classes that a line on weight explains", min=0, max=1
+    )
+    tow_speed_n = column.count("tows behind the slope on tow speed", nullable=True)
+    tow_speed_n_boats = column.count("boats behind it", nullable=True)
+    tow_speed_verdict = column.text("as weight_verdict, for the speed of the tow within a class")
+    tow_speed_slope = column.optional("1", "relative change for a tow 0.1 m/s faster")
+    tow_speed_slope_lo = column.lower("1")
+    tow_speed_slope_hi = column.upper("1")
+    hull_ratio = column.optional("1", "B / hull speed, median of boats; of B alone", min=0)
+    hull_ratio_lo = column.lower("1", min=0)
+    hull_ratio_hi = column.upper("1", min=0)
 
 
 class TypeLinePoints(PerMethod):
-    """A line of `type_lines` with its 95 % interval, for drawing."""
+    """A slope of `type_consistency` as a line with its 95 % interval, for drawing."""
 
-    tows = column.text("all, or newest", primary_key=True)
     boat_type = column.text("type of boat", primary_key=True)
-    quantity = column.text("as in `type_lines`", primary_key=True)
-    explaining = column.text("as in `type_lines`", primary_key=True)
-    crew_class = column.text(
-        "class that the line is of, H or D; of displacement all", primary_key=True
-    )
+    quantity = column.text("as in `type_consistency`", primary_key=True)
+    explaining = column.text("weight_kg or declared_speed_m_s", primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
     x = column.number("as explaining", "place on the line", primary_key=True)
     y = column.number("as quantity", "the line there")
     lo = column.number("as quantity", "lower end of its 95 % interval")
@@ -43,7 +86,7 @@ class TypeLinePoints(PerMethod):
 
 
 class ComparedTows(PerCrewTow):
-    """Every tow next to the others of its type: A, B and Cw at one speed, hull speed, outliers."""
+    """Every tow next to the others of its type: A, B and Cw at one speed, hull speed, races."""
 
     boat_type = column.text("type of boat, or unknown")
     season = column.season()
@@ -73,104 +116,25 @@ class ComparedTows(PerCrewTow):
     cw_standard_lo_kg_m = column.lower("kg/m")
     cw_standard_hi_kg_m = column.upper("kg/m")
     beyond_curve = column.flag("that speed lies outside 85-115 % of the declared speed")
-    deviation_sd = column.optional("1", "difference of ln Cw / standard deviation of a prediction")
-    outside = column.flag("differs at 5 % over all tows of the type", nullable=True)
+    cw_expected_kg_m = column.optional(
+        "kg/m", "that Cw as the type's other boats predict it; of newest tows", min_exclusive=0
+    )
+    cw_deviation_sd = column.optional("1", "difference of ln Cw in sd of the prediction")
+    cw_outside = column.flag("stands out in Cw: 5 % over all boats of the type", nullable=True)
+    b_expected_m_s = column.optional("m/s", "B as the type's other boats predict it")
+    b_deviation_sd = column.optional("1", "difference in sd of the prediction, above 0: larger B")
+    b_outside = column.flag("stands out in B", nullable=True)
     candidates = column.texts("codes of what could explain a difference", nullable=True)
-
-
-class HullSpeed(PerMethod):
-    """Is B hull speed, and at what part of hull speed are boats towed? Medians over boats."""
-
-    boat_type = column.text("type of boat, or all", primary_key=True)
-    n = column.count("tows")
-    n_boats = column.count("boats")
-    tow_ratio = column.number("1", "declared speed / hull speed, median of tows")
-    tow_share_60_70 = column.number("1", "share of tows at 60-70 % of hull speed")
-    b_ratio = column.optional("1", "B / hull speed, median of boats")
-    b_ratio_lo = column.lower("1")
-    b_ratio_hi = column.upper("1")
-    b_share_within_5pct = column.optional("1", "share of B within 5 % of hull speed")
-    b_is_hull_speed = column.flag("the interval of the median holds 1", nullable=True)
-
-
-class TypeOutliers(PerCrewTow):
-    """Every boat and crew against the other boats of its type."""
-
-    boat_type = column.text("type of boat")
-    season = column.season()
-    quantity = column.text("ln_cw_standard, or bend: (v/B)^2 there", primary_key=True)
-    standard_speed_m_s = column.speed("common speed: median declared speed of the type")
-    value = column.number("1", "quantity of this tow, at the standard speed")
-    expected = column.number("1", "the same as the type's other boats predict it")
-    deviation_sd = column.number("1", "difference in standard deviations of a prediction")
-    outside = column.flag("differs at 5 % over all boats of the type together")
-    candidates = column.texts("codes of what could explain a difference")
-
-
-class TypeHomogeneity(PerMethod):
-    """Equal boats, equal B? An F test per method and type, and what noise alone gives."""
-
-    boat_type = column.text("type of boat; unknown: no claims", primary_key=True)
-    n = column.count("tows: the newest of each boat and crew")
-    n_boats = column.count("boats")
-    p_value = column.optional("1", "chance of such an F with one bend", min=0, max=1)
-    power_at_10pct = column.optional("1", "chance to see a true spread of B of 10 %")
-    noise_share = column.optional("1", "share of the bends' spread that noise gives")
-    equal_possible = column.flag(
-        "all may have one bend; empty where the test is too weak to say", nullable=True
-    )
-    shared_b_m_s = column.optional("m/s", "B of the one bend; empty without")
-    reason = column.text("why there is no test: no_type, few_boats, no_scatter; else empty")
-
-
-class PooledCurves(PerCrewTow):
-    """The register if boats of a type kept their bend (own), shared it in part, or wholly."""
-
-    boat_type = column.text("type of boat, or unknown")
-    pooling = column.text(
-        "own, partial or shared", primary_key=True, regex="^(own|partial|shared)$"
-    )
-    standard_speed_m_s = column.speed("common speed of q")
-    q = column.optional("1", "bend at the standard speed")
-    a_kg_m = column.optional("kg/m", "A")
-    b_m_s = column.optional("m/s", "B; empty where it is not determined")
-    cw_085_kg_m = column.optional("kg/m", "Cw at 85 % of the declared speed")
-    cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
-    cw_115_kg_m = column.optional("kg/m", "Cw at 115 % of the declared speed")
-
-
-class SpeedTrend(PerMethod):
-    """Does the bend follow the speed of the tow? If the hyperbola is true, it does not."""
-
-    boat_type = column.text(
-        "type of boat, or all types; each class of a type about its own level", primary_key=True
-    )
-    n = column.count("tows: the newest of each boat and crew")
-    n_boats = column.count("boats")
-    slope = column.optional("1", "change of q at the standard speed per ln of tow speed")
-    slope_lo = column.lower("1")
-    slope_hi = column.upper("1")
-    reason = column.text("why there is no trend: few_boats, equal_values, not_settled; else empty")
-
-
-class SlowTows(PerCrewTow):
-    """Tows made with little power or raced beyond their curve, and race power by their curve.
-
-    Each power ratio is that by the tow's own curve / by the same runs with the bend of its type.
-    """
-
-    boat_type = column.text("type of boat, or unknown")
-    declared_speed_m_s = column.speed("speed v0 the crew declared")
-    season = column.season()
-    power_w = column.optional("W", "power per rower at the declared speed")
-    slow = column.flag("under 60 W (women 34 W); else under 70 W, or raced off its curve")
-    tow_hull_ratio = column.number("1", "declared speed / hull speed")
-    speed_case = column.text("low (under 0.67 of hull speed), middle or high (from 0.80)")
     races = dy.Int32(description="races until its next tow; empty: none", nullable=True)
     raced_speed_m_s = column.speed("fastest of them, through the water", nullable=True)
+    raced_beyond_curve = column.flag(
+        "that speed lies outside 85-115 % of the declared speed", nullable=True
+    )
     raced_power_w = column.optional("W", "power per rower there by its own curve")
     raced_high = column.flag("over 100 W (women 57 W)", nullable=True)
-    power_ratio_raced = column.optional("1", "power ratio at the raced speed")
+    power_ratio_raced = column.optional(
+        "1", "power there by its own curve / by the same runs with the bend of its type"
+    )
 
 
 class RepeatPairs(PerMethod):
@@ -216,20 +180,6 @@ class Reproducibility(PerMethod):
     within_sd_ratio = column.optional("1", "s_r: by the scatter of a tow's runs alone", min=0)
 
 
-class VarianceComponents(PerMethod):
-    """Spread of Cw by cause, from a mixed model over all tows (REML)."""
-
-    scope = column.text("fleet, or within_type", primary_key=True)
-    component = column.text("boat, season, boat_season or run", primary_key=True)
-    n = column.count("tows")
-    n_boats = column.count("boats and crews between two alterations")
-    sd_ratio = column.optional("1", "standard deviation of Cw by this cause", min=0)
-    lo = column.lower("1", min=0)
-    hi = column.optional("1", "upper end; empty: no bound", min=0)
-    share = column.optional("1", "share of the variance of a tow's Cw", min=0, max=1)
-    reason = column.text("why there are no numbers: too_few_repeats, not_settled; else empty")
-
-
 class PredictedCw(PerCrewTow):
     """A second opinion without towing: Cw from weight, length, beam and type."""
 
@@ -244,13 +194,4 @@ class PredictedCw(PerCrewTow):
     predicted_hi_kg_m = column.upper("kg/m")
     ln_ratio = column.optional("1", "ln of the tow's Cw / the predicted")
     disagrees = column.flag("differs by more than both uncertainties", nullable=True)
-    reason = column.text("why there is no prediction: few_boats, not_settled; else empty")
-
-
-class PredictionError(PerMethod):
-    """Cross-validated error of the prediction, boats left out one by one."""
-
-    n = column.count("boats and crews predicted")
-    n_boats = column.count("boats")
-    rmse_ratio = column.number("1", "root mean square of ln tow / predicted", min=0)
-    tow_sd_ratio = column.number("1", "of which uncertainty of the tow itself", min=0)
+    reason = column.text("why there is no prediction: few_boats; else empty")

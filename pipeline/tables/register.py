@@ -42,6 +42,11 @@ class _Line(dy.Schema):
     cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
     cw_lo_kg_m = column.optional("kg/m", column.LOWER_END)
     cw_hi_kg_m = column.upper("kg/m")
+    basis = column.text(
+        "measured; printed_rebased, printed_not_rebased: a printed line whose tow has no samples; "
+        "printed: of a register as printed",
+        nullable=True,
+    )
 
 
 class Register(_Line):
@@ -134,3 +139,57 @@ class RaceChanges(dy.Schema):
     old_rank = dy.Int32(description=PLACE, nullable=True)
     new_rank = dy.Int32(description="the same by the new one", nullable=True)
     podium_changed = column.flag(PODIUM_CHANGED, nullable=True)
+
+
+class RegisterYears(dy.Schema):
+    """The register at the end of each season, under each method and as it was published."""
+
+    year = column.count("season at whose end the lines were valid", primary_key=True)
+    method = column.method(primary_key=True)
+    published_method = column.text("method by which that year's register was published")
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    empty_thwart = column.empty_thwart(primary_key=True)
+    tow_id = column.tow_id(nullable=True)
+    tow_date = column.day("day of the tow", nullable=True)
+    valid_until = column.day("last day the line counts", nullable=True)
+    basis = column.text("what the line rests on, as in register", nullable=True)
+    declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
+    a_kg_m = column.optional("kg/m", "A")
+    b_m_s = column.optional("m/s", "B; empty where it is not determined")
+    cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
+    rank = dy.Int32(
+        description="place in the class at equal power; 1 is the fastest", nullable=True
+    )
+    published_tow_id = column.tow_id(nullable=True)
+    published_declared_speed_m_s = column.speed("the same as published", nullable=True)
+    published_a_kg_m = column.optional("kg/m", "A as published")
+    published_b_m_s = column.optional("m/s", "B as published")
+    published_cw_kg_m = column.optional("kg/m", "Cw as published")
+    published_rank = dy.Int32(description="place in the class as published", nullable=True)
+    change = column.text("added, removed, changed or same", regex="^(added|removed|changed|same)$")
+    cw_ratio = column.optional("1", "Cw / Cw as published, at the speed declared then")
+    power_ratio = column.optional("1", "power / power as published, at that speed")
+    gain_in_two_hours_s = dy.Float64(
+        description="what the method gives in a race of two hours; minus is less",
+        metadata={"unit": "s"},
+        nullable=True,
+    )
+    exceeds_interval = column.flag("the change is larger than the intervals of both", nullable=True)
+    causes = column.text("what made the change, with its factor on Cw, as JSON")
+
+
+class YearWinners(dy.Schema):
+    """Who won each race by the register of its time, and who would have under each method."""
+
+    year = column.count("season of the race", primary_key=True)
+    method = column.method(primary_key=True)
+    published_method = column.text("method by which that year's register was published")
+    race = column.text("name of the race", primary_key=True)
+    race_date = column.day("day of the race", primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    published_winner = column.text("boat that won; null where nobody has a power", nullable=True)
+    winner = column.text("boat that wins under the method", nullable=True)
+    winner_changed = column.flag("another crew wins")
+    change_probability = column.optional("1", "how likely it is that another crew than then wins")

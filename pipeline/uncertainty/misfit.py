@@ -21,6 +21,8 @@ MIN_SPEEDS: Final = 3
 """Fewest intended speeds that show a shape."""
 PARAMETERS: Final = 4
 """Parameters of a tow's residuals: mean, slope, bend, and out against back."""
+BEND: Final = 2
+"""Place of the bend among them."""
 MIN_SCATTER: Final = 1e-20
 """Mean square of residuals that are rounding alone. Wind coefficients of each run can bring every
 point onto the curve: such points tell nothing."""
@@ -76,12 +78,15 @@ def fit_parabolas(
     spare_points = np.bincount(place, weight.sum(axis=1) - PARAMETERS)[place]
     scatter = (np.bincount(place, (residual**2).sum(axis=1))[place] / spare_points)[:, None]
 
+    # The curve was fitted to the same points and took their mean and slope with it. What is left
+    # of x² beside these two is the bow of a hull about its curve, and its bend the only unknown.
+    line = design[:, :, :BEND]
+    on_line = np.linalg.pinv(line) @ (x**2)[..., None]  # (t, 2, 1)
     at = speeds - 1.0
-    asked = np.stack([np.ones_like(at), at, at**2, np.zeros_like(at)], axis=1)
-    leverage = np.einsum("sj,tjk,sk->ts", asked, inverse, asked)
+    bow = at**2 - (np.stack([np.ones_like(at), at], axis=1) @ on_line)[..., 0]
     is_known = scatter > MIN_SCATTER
-    ratio[tells] = np.where(is_known, parameters @ asked.T, 0.0)
-    variance[tells] = np.where(is_known, scatter * leverage, np.inf)
+    ratio[tells] = np.where(is_known, parameters[:, BEND, None] * bow, 0.0)
+    variance[tells] = np.where(is_known, scatter * inverse[:, BEND, BEND, None] * bow**2, np.inf)
     return Misfit(ratio, variance)
 
 
@@ -95,21 +100,28 @@ def _has_enough_points(is_used: BoolArray, direction: FloatArray, target: FloatA
     return np.asarray(has_spare & (speeds >= MIN_SPEEDS) & has_out & has_back)
 
 
-def shrink_to_boats(misfit: Misfit, boat: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return what all tows of a boat say of its misfit, and its variance, (tows, speeds) each.
+def shrink_to_lines(misfit: Misfit, line: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return what all tows of a boat and crew say of its misfit, and its variance.
+
+    The normal model of meta-analysis at each speed: misfit_i ~ N(theta_i, variance_i), theta_i ~
+    N(0, between), with `between` by moments. Crews of one boat are apart, as they are towed at
+    other speeds: a hump lies where the hull's waves are, not at a share of the declared speed.
 
     Args:
         misfit: of all tows of an archive.
-        boat: (tows,) number of each tow's boat.
+        line: (tows,) number of each tow's boat and crew.
+
+    Returns:
+        Posterior mean and variance, (tows, speeds) each.
     """
     tells = np.isfinite(misfit.variance)
     excess = np.where(tells, misfit.ratio**2 - misfit.variance, 0.0).sum(axis=0)
     between = (PRIOR_TOWS * USUAL_RATIO**2 + excess) / (PRIOR_TOWS + tells.sum(axis=0))
     between = np.maximum(between, 0.0)
-    boats = int(boat.max(initial=-1)) + 1
-    precision = np.zeros((boats, misfit.ratio.shape[1]))
-    weighted = np.zeros((boats, misfit.ratio.shape[1]))
-    np.add.at(precision, boat, 1.0 / misfit.variance)
-    np.add.at(weighted, boat, misfit.ratio / misfit.variance)
+    lines = int(line.max(initial=-1)) + 1
+    precision = np.zeros((lines, misfit.ratio.shape[1]))
+    weighted = np.zeros((lines, misfit.ratio.shape[1]))
+    np.add.at(precision, line, 1.0 / misfit.variance)
+    np.add.at(weighted, line, misfit.ratio / misfit.variance)
     variance = between / (1.0 + between * precision)
-    return (variance * weighted)[boat], variance[boat]
+    return (variance * weighted)[line], variance[line]

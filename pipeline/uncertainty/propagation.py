@@ -42,8 +42,9 @@ class Assumed:
     temperature_formula_ratio: float = 0.002  # wetted surface and friction formula
     straightness_ratio: float = 0.002  # tows that are pulled slightly askew
     between_tows_ratio: float = 0.0  # what repeat tows show of all that differs from tow to tow
+    between_tows_n: float = 0.0  # and of what adds to the force: the zero of the load cell
 
-    def beside_repeats(self, tow_sd: float, calibration_sd: float) -> "Assumed":
+    def beside_repeats(self, tow_sd: float, tow_zero_n: float, calibration_sd: float) -> "Assumed":
         """Return what remains assumed where repeat tows show how far tows scatter.
 
         Calibration, recorded temperature, straightness and the weighing of the crew differ from tow
@@ -51,12 +52,15 @@ class Assumed:
         they never shrink it (ISO 5725-1; GUM, type B).
 
         Args:
-            tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
+            tow_sd: standard deviation of ln Cw of a tow beyond its random part, its log and its
+                zero.
+            tow_zero_n: of the load cell's zero from tow to tow, N.
             calibration_sd: of the ln speed of tows calibrated on dGPS.
         """
         return replace(
             self,
             between_tows_ratio=tow_sd,
+            between_tows_n=tow_zero_n,
             force_ratio=self.force_standard_ratio,
             calibration_speed_ratio=calibration_sd,
             mass_ratio=self.mass_standard_ratio,
@@ -100,6 +104,8 @@ def list_components(assumed: Assumed) -> dict[str, Component]:
         .then(col("water_off_c").clip(lower_bound=assumed.temperature_known_c))
         .otherwise(assumed.temperature_unknown_c)
     )
+    by_zero = assumed.between_tows_n / col("force_n")
+    between_tows = (assumed.between_tows_ratio**2 + by_zero**2).sqrt()
     by_temperature = assumed.temperature_ratio_per_c * temperature_sd_c
     by_mass = 0.5 * col("mass_ln_sd") * col("water_change_ratio")
     temperature = (assumed.temperature_formula_ratio**2 + by_temperature**2 + by_mass**2).sqrt()
@@ -107,7 +113,7 @@ def list_components(assumed: Assumed) -> dict[str, Component]:
         "random": Component(col("random_ratio"), dof=col("random_dof")),
         "misfit": Component(col("misfit_ratio")),
         "calibration": Component(col("kappa") * speed_sd),
-        "between_tows": Component(pl.lit(assumed.between_tows_ratio)),
+        "between_tows": Component(between_tows),
         "force": Component(col("force_sd").fill_null(assumed.force_ratio), season),
         "wind": Component(
             wind, pl.when(has_wind).then(pl.lit("archive")).otherwise(pl.lit("single"))
@@ -132,14 +138,14 @@ def make_budget(facts: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
     Args:
         facts: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part`; `kappa`, elasticity of Cw by a speed error; `random_ratio`, of the
-            scatter of the run points, with `random_dof`; `misfit_ratio`, of the hull about its
-            hyperbola; `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0
-            and any where calibrated), `tow_log_sd` of the log (0 where calibrated); `air_ratio`,
-            net wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
-            coefficient (both signed); `wind_coefficient`, standard deviation of that coefficient;
-            `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it reads;
-            `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw, and
-            `unmeasured_wind`, standard deviation of the net correction over that;
+            scatter of the run points, with `random_dof`; `force_n`, tow force; `misfit_ratio`, of
+            the hull about its hyperbola; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
+            season's ln factor (0 and any where calibrated), `tow_log_sd` of the log (0 where
+            calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
+            ln Cw per unit of drag coefficient (both signed); `wind_coefficient`, standard deviation
+            of that coefficient; `wind_ln_sd`, of the anemometer's ln scale, null where it is taken
+            as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part /
+            Cw, and `unmeasured_wind`, standard deviation of the net correction over that;
             `temperature_known`; `water_off_c`, of the water from its day's; `mass_ln_sd`, of ln
             mass, 0 where it was weighed, and `water_change_ratio`, the correction for temperature /
             Cw, which goes with the root of the mass; `askew_ratio`, by being pulled askew, null

@@ -9,7 +9,7 @@ from warehouse.intake.seasons import INDEXED
 BARE = {
     *("samples", "blocks", "read_tows", "read_runs", "set_aside", "failed_tows", "unforeseen"),
     *("applied_methods", "decisions", "published_register", "published_register_history"),
-    *("published_register_changes", "published_lineage"),
+    *("published_register_changes", "published_lineage", "differences_that_matter"),
     *("warehouse_database", "site", "check_results", "report"),
 }
 """Tables between assets, which no reader has: their columns are not declared."""
@@ -45,7 +45,10 @@ def test_an_edge_is_a_table_that_is_read():
         return {key.to_user_string() for key in graph.get(dg.AssetKey(table)).parent_keys}
 
     assert read("era_shifts") == {"repeat_pairs", "boats"}
-    assert read("type_lines") == {"curves", "run_points", "tows", "boats"}
+    assert read("type_consistency") == {
+        *("curves", "run_points", "tows", "boats", "repeat_pairs", "listed_races"),
+        "differences_that_matter",
+    }
     assert read("race_changes") == {"register_changes", "register_history", "listed_races"}
     assert read("blocks") == {"samples"}
     assert read("samples") == {"listed_tows", "listed_runs", "season_profiles"}

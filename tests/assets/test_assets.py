@@ -69,7 +69,9 @@ def test_after_a_run_dagster_calls_nothing_stale_and_a_change_what_follows(bench
         assert stale(ask) == set()
 
 
-@pytest.mark.parametrize("name", ["type_lines", "curves", "register", "tows", "site", "report"])
+@pytest.mark.parametrize(
+    "name", ["type_consistency", "curves", "register", "tows", "site", "report"]
+)
 def test_an_asset_can_be_made_alone(name, bench, built, instance):
     bench.store.table_path(name).unlink()
     assert materialise(bench, instance, name).success

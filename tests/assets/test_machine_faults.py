@@ -215,7 +215,7 @@ def test_damaged_tables_are_made_again_when_they_are_needed(bench, built):
 
 @pytest.mark.slow
 def test_a_damaged_database_is_made_again_by_the_next_run(bench, built):
-    statistics = bench.store.table_path("type_lines")
+    statistics = bench.store.table_path("type_consistency")
     made = statistics.stat().st_mtime_ns
     for how in DAMAGED:
         damaged(bench.store.database, how)

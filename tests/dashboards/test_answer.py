@@ -92,14 +92,23 @@ def race(first_s, new_ranks):
     return winners(frame, {})
 
 
-def homogeneity(equal_possible):
-    test = {"p_value": [0.3], "equal_possible": [equal_possible], "n": [11]}
-    return boat_type.homogeneity(pl.DataFrame(test))
+TYPE_ROW = {
+    "quantity": "b_m_s", "standard_speed_m_s": 2.6, "n": 11, "n_boats": 10, "spread_ratio": 0.03,
+    "spread_lo": 0.01, "spread_hi": 0.05, "error_ratio": 0.02, "farthest": "FSN105",
+    "farthest_ratio": 0.91, "farthest_ratio_lo": 0.85, "farthest_ratio_hi": 0.97,
+    "rest_verdict": "equal", "difference_that_matters": 0.1, "repeat_pairs": 40, "outside": [],
+}  # fmt: skip
 
 
-def slope(value, low, high):
-    line = {"slope": value, "slope_lo": low, "slope_hi": high, "explaining": "weight_kg"}
-    return boat_type.slope(line | {"reason": "few_boats"})
+def equality(verdict, **differs):
+    (said,) = boat_type.judge_type([TYPE_ROW | {"verdict": verdict} | differs])
+    return said
+
+
+def slope(verdict, value, low, high):
+    ends = {"weight_slope": value, "weight_slope_lo": low, "weight_slope_hi": high}
+    known = {"weight_r2": None, "weight_n": 9, "n": 9, "weight_verdict": verdict}
+    return boat_type.describe_slope(ends | known, "weight")
 
 
 def of_many():
@@ -114,9 +123,14 @@ def of_many():
         "old_rank": [1, None, 2], "new_rank": [1, None, 2],
     }  # fmt: skip
     yield "a race", "one not placed", winners(pl.DataFrame(ranked), {("R 2025-06-04", "H"): 0.1})
-    for equal_possible in (True, None, False):
-        yield "bends of a type", equal_possible, homogeneity(equal_possible)
-    for line in ((0.0123, 0.0101, 0.0149), (-2.5, -4.0, -1.0), (0.0, -14.0, 14.0), (None,) * 3):
+    for verdict in ("equal", "differ", "open", "few_boats"):
+        yield "equality of a type", verdict, equality(verdict)
+    yield "equality of a type", "one stands out", equality("differ", outside=["FSN105"])
+    yield "equality of a type", "no upper bound", equality("open", spread_hi=None)
+    for line in (
+        ("rises", 0.0123, 0.0101, 0.0149), ("falls", -0.025, -0.04, -0.01),
+        ("open", 0.0, -0.14, 0.14), ("few_boats", None, None, None),
+    ):  # fmt: skip
         found = slope(*line)
         yield f"a slope, {found.verdict}", line, found
 

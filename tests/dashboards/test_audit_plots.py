@@ -64,7 +64,9 @@ def test_a_plot_says_of_what_it_is_and_leads_nowhere_else(type_plots):
 
 
 def test_a_boats_plots_single_it_out_in_its_type(built, tmp_path):
-    newest = built.table("type_outliers").filter(boat_type="Kuikensloep", method="rebased-2015")
+    newest = built.table("compared_tows").filter(
+        "newest", boat_type="Kuikensloep", method="rebased-2015"
+    )
     plots, others = (drawn(built.store, tmp_path, newest["fsn_no"][i]) for i in (0, -1))
     name = "cw_standard_weight"
     assert plots[name] != others[name]

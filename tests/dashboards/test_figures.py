@@ -79,7 +79,6 @@ def test_a_boat_far_from_the_others_does_not_pull_the_scale():
 
 METHODS = {
     "season_change": {"season": 2010, "median_ratio": 0.9, "lowest_ratio": 0.8, "highest_ratio": 1},
-    "components": {"scope": "fleet", "component": "boat", "sd_ratio": 0.9, "lo": 0.8, "hi": 1.1},
     "repeats": {"season": 2012, "season_before": 2010, "cw_ratio": 1.1, "page": "#"},
     "curves_compared": {"kind": "point", "speed_m_s": 2.5, "cw_kg_m": 30.0, "run": 1, "used": True},
 }
@@ -124,6 +123,6 @@ def test_a_trace_says_why_it_was_cut():
 
 
 def test_an_archive_of_a_thousand_tows_can_be_drawn():
-    many = pl.DataFrame({"kind": ["tow"] * 6000, "method": "rebased", "tow_hull_ratio": 0.7})
-    (rows,) = FIGURES["slide_towed_at"](many, speaker("en")).to_dict()["datasets"].values()
+    many = pl.DataFrame({"kind": ["tow"] * 6000, "method": "rebased", "weight_kg": 1000.0})
+    (rows,) = FIGURES["type_cw_weight"](many, speaker("en")).to_dict()["datasets"].values()
     assert len(rows) == 6000

@@ -23,7 +23,7 @@ from dashboards.site.prose import SHEETS
 from dashboards.site.render import build_pages, build_site
 from dashboards.site.start import ABOUT
 from dashboards.speech import Speech
-from dashboards.statements.boat_type import LINES, QUANTITIES, slope
+from dashboards.statements.boat_type import describe_slope
 from pipeline.register.register import default_method
 from pipeline.tables.schemas import TABLES
 from pipeline.tables.views import VIEWS
@@ -208,17 +208,14 @@ def test_a_column_and_a_code_on_a_page_have_a_text(store, site):
 
 def test_the_types_page_begins_with_the_slopes_of_both_types_by_method(built, site):
     page = (site / "types.html").read_text("utf-8")
-    first = page[page.index('id="types-slopes"') : page.index('id="types-verdicts"')]
-    lines = built.table("type_lines").filter(
+    first = page[page.index('id="types-slopes"') : page.index('id="types-charts"')]
+    rows = built.table("type_consistency").filter(
         pl.col("boat_type").is_in(["Kuikensloep", "Kromhoutwhaler"]),
-        pl.col("quantity").is_in(QUANTITIES),
         pl.col("method").is_in([METHODS[0], default_method(METHODS)]),
-        tows="newest",
     )
-    lines = lines.filter([one in LINES for one in lines.select("explaining", "within").rows()])
-    assert lines.height
-    for line in lines.to_dicts():
-        assert keep_units(slope(line)(Speech("nl"))) in first
+    assert rows.height
+    for row in rows.to_dicts():
+        assert keep_units(describe_slope(row, "weight")(Speech("nl"))) in first
 
 
 def test_a_column_without_anything_in_it_is_not_shown():

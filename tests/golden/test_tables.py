@@ -21,9 +21,6 @@ from dashboards.statements import Statement
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.seen import Seen
 from pipeline.blocks.tows import Tows
-from pipeline.consistency.compared import compared_tows, hull_speed_statistics
-from pipeline.consistency.observed import observe
-from pipeline.consistency.tables import line_tables
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.season_log import estimate_season_factors
@@ -73,10 +70,7 @@ def of_a_fleet() -> dict[str, pl.DataFrame]:
     speeds = [2.0, 2.1, *np.linspace(2.4, 2.7, 7)]
     seasons = {"seasons": (2010, 2014, 2018), "boats": 9, "speeds_m_s": speeds}
     tables = fleet(40, b_cv=0.03, height_sd=0.03, season_sd=0.02, tow_sd=0.01, **seasons)
-    observed = observe(*tables)
-    compared = compared_tows(observed)
-    own = {"compared_tows": compared, "hull_speed": hull_speed_statistics(compared)}
-    return line_tables(observed) | consistency_tables(*tables) | own
+    return consistency_tables(*tables)
 
 
 def of_logs() -> dict[str, pl.DataFrame]:

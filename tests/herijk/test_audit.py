@@ -9,7 +9,7 @@ import pytest
 
 from dashboards.labels import code
 from dashboards.speech import Speech
-from dashboards.statements.boat_type import slope
+from dashboards.statements.boat_type import describe_slope
 from tests.conftest import METHODS
 
 
@@ -66,45 +66,43 @@ def test_the_steps_of_a_tow_multiply_to_the_total_printed(audit, built):
 
 def test_the_answer_about_types_has_every_line_with_its_interval_and_n(audit, built):
     types = sorted(built.table("boats")["boat_type"].drop_nulls().unique())
-    rows = built.table("type_lines").filter(
-        pl.col("reason") == "",
-        pl.col("quantity").is_in(["b_m_s", "a_kg_m", "cw_standard_kg_m"]),
-        explaining="weight_kg",
-        method="rebased-2015",
-        within="all",
-        tows="newest",
+    rows = built.table("type_consistency").filter(
+        pl.col("weight_slope").is_not_null(), method="rebased-2015"
     )
     assert rows.height > 0
     pages = {t: audit(t, "--method", "rebased-2015") for t in types}
     for row in rows.iter_rows(named=True):
-        said = slope(row)(Speech("en"))
+        said = describe_slope(row, "weight")(Speech("en"))
         assert re.search(rf" {row['n']} +.*{re.escape(said)}", pages[row["boat_type"]])
-    assert "Can all boats have the same bend?" in audit(types[0], "--steps")
+    assert "Are they equal?" in audit(types[0], "--steps")
 
 
 def test_a_type_is_judged_by_the_newest_tow_of_each_boat_and_crew(audit, built):
     (of_type,) = json.loads(audit("Kuikensloep", "--json"))["types"]
     for method, under in of_type["under"].items():
-        assert {line["tows"] for line in under["lines"]} == {"newest"}
         tows = built.table("compared_tows").filter("newest", method=method, boat_type="Kuikensloep")
-        assert {row["tow_id"] for row in under["newest"]} == set(tows["tow_id"])
+        (b,) = [row for row in under["consistency"] if row["quantity"] == "b_m_s"]
+        assert b["n"] == tows.height
         assert {row["tow_id"] for row in under["outside"]} <= set(tows["tow_id"])
 
 
-def test_boats_that_stand_out_are_those_of_the_table_of_outliers(herijk, bench):
+def test_boats_that_stand_out_are_those_of_the_verdict_with_what_may_explain_it(herijk, bench):
     with duckdb.connect(bench.store.database) as db:
-        db.execute("UPDATE type_outliers SET outside = false")
-        db.execute("UPDATE compared_tows SET outside = true")
+        db.execute("UPDATE type_consistency SET outside = []")
+        db.execute("UPDATE compared_tows SET cw_outside = false, b_outside = false")
     call = ("audit", "Kuikensloep", "--data", bench.data)
-    assert "stand out" not in herijk(*call)[1]
+    assert "These stand out" not in herijk(*call)[1]
     with duckdb.connect(bench.store.database) as db:
+        fsn_no = db.execute(
+            "SELECT min(fsn_no) FROM compared_tows WHERE boat_type = 'Kuikensloep' AND newest"
+        ).fetchall()[0][0]
+        db.execute("UPDATE type_consistency SET outside = [?], verdict = 'differ'", [fsn_no])
         db.execute(
-            "UPDATE type_outliers SET outside = true WHERE quantity = 'ln_cw_standard' "
-            "AND fsn_no = (SELECT min(fsn_no) FROM type_outliers WHERE boat_type = 'Kuikensloep')"
+            "UPDATE compared_tows SET cw_outside = true, candidates = ['askew'] WHERE fsn_no = ?",
+            [fsn_no],
         )
-        rows = db.execute("SELECT DISTINCT fsn_no FROM type_outliers WHERE outside").fetchall()
-        db.execute("UPDATE compared_tows SET outside = false")
-    assert f"These stand out: {rows[0][0]}" in herijk(*call)[1]
+    said = herijk(*call)[1]
+    assert re.search(rf"These stand out: .*{fsn_no} \(perhaps pulled askew\)", said)
 
 
 def test_two_types_stand_side_by_side(audit, built):

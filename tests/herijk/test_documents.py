@@ -5,9 +5,8 @@ import shutil
 import pypdf
 import pytest
 
-from dashboards.documents import certificate, proposal, slides
+from dashboards.documents import certificate, proposal
 from dashboards.site import render
-from dashboards.statements.slides import Book
 from tests.conftest import METHODS
 
 EDITION = f"concept-{METHODS[1]}"
@@ -56,11 +55,9 @@ def test_of_all_certificates(fails, herijk, data, built, tmp_path):
     ("lost", "owner", "name", "command", "made"),
     [
         (f"proposal-{METHODS[1]}", proposal, "_types", ("proposal", METHODS[1]), False),
-        ("slide-hull-speed", Book, "hull_speed", ("slides",), True),
-        ("slides", slides, "pdf", ("slides",), False),
     ],
 )
-def test_of_a_proposal_and_of_slides(lost, owner, name, command, made, fails, tmp_path):
+def test_of_a_proposal(lost, owner, name, command, made, fails, tmp_path):
     out = tmp_path / "out.pdf"
     fails(lost, owner, name, lambda *_: True, *command, "--out", out)
     assert out.exists() == made

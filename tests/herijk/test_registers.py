@@ -82,3 +82,16 @@ def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, published, tmp_path
     assert status == 1
     assert "register.csv" in out
     assert "WRONG" in out
+
+
+def test_the_register_of_every_year_beside_the_published_one(herijk, built):
+    call = ("register", EDITION, "--years", "--data", built.data)
+    status, out, err = herijk(*call)
+    assert (status, err) == (0, "")
+    assert "SIMULATED" in out
+    report = json.loads(herijk(*call, "--json")[1])
+    years = [row["year"] for row in report["years"]]
+    assert years == sorted(years)
+    for row in report["years"]:
+        assert str(row["year"]) in out
+        assert row["lines"] == sum(line["year"] == row["year"] for line in report["lines"])

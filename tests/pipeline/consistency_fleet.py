@@ -6,18 +6,18 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.consistency.components import variance_components
-from pipeline.consistency.eras import era_shifts
-from pipeline.consistency.lines import type_lines
+from pipeline.consistency.compared import type_tables
 from pipeline.consistency.observed import observe
-from pipeline.consistency.repeats import repeat_pairs, reproducibility
-from pipeline.consistency.tables import type_tables
-from pipeline.consistency.tow_speed import slow_tows
+from pipeline.consistency.prediction import predict_cw
+from pipeline.consistency.repeats import era_shifts, repeat_pairs, reproducibility
+from pipeline.consistency.types import compare_types
+from pipeline.quantiles import NORMAL
 from pipeline.tables.lake import ListedRaces
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
 POWER = 0.8
-CREW_KG = 760.0
+CREW_KG = {"H": 760.0, "D": 600.0}
+WOMENS_SPEED_RATIO = 0.88
 NO_RACES = ListedRaces.create_empty()
 
 
@@ -35,17 +35,47 @@ def fleet(
     weights_kg=None,
     speeds_m_s=None,
     boat_type="like",
+    women=0,
+    boat_off=0.0,
+    hump=0.0,
+    log_exponent_sd=0.0,
+    interval_ratio=1.0,
+    seasons_in_turn=False,
+    others=0,
 ):
     """Curves, tows, boats and run points: every boat is towed once in every season.
 
     Cw at 2.5 m/s is 35 kg/m at a displacement of 1,800 kg and grows with its power 0.8; B = 4.6 m/s
     with a coefficient of variation b_cv, independent of weight and tow speed.
+
+    Args:
+        noise, tow_sd, season_sd: errors of ln Cw of a run, a tow and a season.
+        zero_sd_n, log_exponent_sd: of the load cell, and of the power of the true speed that the
+            log reads, from tow to tow.
+        interval_ratio: how much of their errors the intervals of tows say.
+        b_cv, height_sd: spread between boats in B and in ln Cw.
+        women: so many of the last boats have women's crews, lighter and towed slower.
+        boat_off: boat 0 lies so far off in ln Cw.
+        hump: of that height in ln Cw near 2.9 m/s, so that hulls are no hyperbolas.
+        seasons_in_turn: every boat is towed in one of the seasons.
+        others: so many boats of no known type are towed in two of the seasons.
     """
     rng = np.random.default_rng(seed)
-    boat, season = (x.ravel() for x in np.meshgrid(np.arange(boats), seasons, indexing="ij"))
+    in_turn = [(b, seasons[b % len(seasons)]) for b in range(boats)]
+    towed = in_turn if seasons_in_turn else [(b, s) for b in range(boats) for s in seasons]
+    for other in range(others):
+        twice = (seasons[other % len(seasons)], seasons[(other + 1) % len(seasons)])
+        towed += [(boats + other, season) for season in twice]
+    of_type = boats
+    boats += others
+    boat, season = (np.array(column) for column in zip(*towed, strict=True))
     n = len(boat)
     weights = rng.normal(1000, 80, boats) if weights_kg is None else np.asarray(weights_kg, float)
     speeds = rng.uniform(2.4, 2.6, boats) if speeds_m_s is None else np.asarray(speeds_m_s)
+    is_woman = (np.arange(boats) >= of_type - women) & (np.arange(boats) < of_type)
+    crew_class = np.where(is_woman, "D", "H")
+    crew_kg = np.array([CREW_KG[name] for name in crew_class])
+    speeds = np.where(crew_class == "D", WOMENS_SPEED_RATIO, 1.0) * speeds
     v0 = speeds[boat]
     tow_id = [f"{s}-{b:03d}" for b, s in zip(boat, season, strict=True)]
     fsn = [f"FSN{b:03d}" for b in range(boats)]
@@ -55,12 +85,19 @@ def fleet(
     shift = season_sd * rng.normal(size=(repetitions, len(seasons)))
     own = tow_sd * rng.normal(size=(repetitions, n))
     level = height[:, boat] + shift[:, np.searchsorted(seasons, season)] + own
-    heavy = np.nan_to_num((weights + CREW_KG) / 1800.0, nan=1.0)[boat] ** POWER
+    level += np.where(boat == 0, boat_off, 0.0)
+    heavy = np.nan_to_num((weights + crew_kg) / 1800.0, nan=1.0)[boat] ** POWER
     s = 1.0 / b[:, boat] ** 2
     a = 35.0 * np.exp(level) * heavy * (1.0 - s * 2.5**2)
     speed = v0[:, None] * RUN_RATIOS * rng.normal(1.0, 0.005, (repetitions, n, 6))
     cw = curve.cw(a[..., None], s[..., None], speed)
+    cw *= np.exp(hump * np.exp(-0.5 * ((speed - 2.9) / 0.15) ** 2))
     cw *= 1.0 + noise * rng.normal(size=cw.shape)
+    if log_exponent_sd:
+        exponent = 1.0 + log_exponent_sd * rng.normal(size=(repetitions, n, 1))
+        read = v0[:, None] * (speed / v0[:, None]) ** exponent
+        cw *= (speed / read) ** 2
+        speed = read
     cw += zero_sd_n * rng.normal(size=(repetitions, n, 1)) / speed**2
 
     tows = pl.DataFrame(
@@ -71,7 +108,7 @@ def fleet(
             "altered": [False] * n,
             "declared_speed_m_s": v0,
             "weight_kg": weights[boat],
-            "crew_weight_kg": np.full(n, CREW_KG),
+            "crew_weight_kg": crew_kg[boat],
             "waterline_length_m": np.full(n, 8.2),
             "beam_m": np.full(n, 2.2),
         }
@@ -94,17 +131,16 @@ def fleet(
             "fsn_no": np.tile(np.array(fsn)[boat], repetitions),
             "season": np.tile(season.astype(np.int32), repetitions),
             "rowers": np.full(repetitions * n, 8, np.int32),
-            "crew_class": ["H"] * (repetitions * n),
+            "crew_class": np.tile(crew_class[boat], repetitions),
             "declared_speed_m_s": np.tile(v0, repetitions),
         }
-    ).with_columns(*_fitted(*flat, np.tile(v0, repetitions)))
-    boat_table = pl.DataFrame(
-        {"fsn_no": fsn, "boat_type": pl.Series([boat_type] * boats, dtype=pl.String)}
-    )
+    ).with_columns(*_fitted(*flat, np.tile(v0, repetitions), tow_sd * interval_ratio))
+    types = [boat_type] * of_type + [None] * others
+    boat_table = pl.DataFrame({"fsn_no": fsn, "boat_type": pl.Series(types, dtype=pl.String)})
     return curves, tows, boat_table, run_points
 
 
-def _fitted(speed, cw, v0):
+def _fitted(speed, cw, v0, tow_sd):
     points = curve.Points.of(speed, cw)
     fitted = curve.fit(points)
     scatter = curve.own_scatter(fitted)
@@ -115,8 +151,9 @@ def _fitted(speed, cw, v0):
     yield pl.Series("b_m_s", b).fill_nan(None)
     yield from (pl.lit(None, pl.Float64).alias(name) for name in ("b_lo_m_s", "b_hi_m_s"))
     yield pl.Series("cw_kg_m", at)
-    yield pl.Series("cw_lo_kg_m", interval.lo)
-    yield pl.Series("cw_hi_kg_m", interval.hi)
+    half = np.hypot(np.log(interval.hi / interval.lo) / 2.0, NORMAL * tow_sd)
+    yield pl.Series("cw_lo_kg_m", at * np.exp(-half))
+    yield pl.Series("cw_hi_kg_m", at * np.exp(half))
     yield pl.lit(None, pl.Float64).alias("cw_others_kg_m")
     yield pl.Series("power_w", at * v0**3 / 8)
     yield pl.Series("b_capped", np.zeros(len(v0), bool))
@@ -124,17 +161,17 @@ def _fitted(speed, cw, v0):
     yield pl.Series("flags", [[]] * len(v0), dtype=pl.List(pl.String))
 
 
-def newest_lines(observed):
-    """Rows of the table `type_lines` of the newest tows."""
-    return type_lines(observed)[0].filter(tows="newest")
+def compared(curves, tows, boats, run_points):
+    """What the models say of the types of these tows."""
+    observed = observe(curves, tows, boats, run_points)
+    return compare_types(observed, repeat_pairs(curves, tows))
 
 
-def consistency_tables(curves, tows, boats, run_points):
-    """All tables of the analysis but the lines, without races."""
+def consistency_tables(curves, tows, boats, run_points, races=NO_RACES):
+    """All tables of the analysis."""
     observed, pairs = observe(curves, tows, boats, run_points), repeat_pairs(curves, tows)
-    return type_tables(observed) | {
-        "variance_components": variance_components(observed),
-        "slow_tows": slow_tows(observed, NO_RACES),
+    return type_tables(observed, pairs, races) | {
+        "predicted_cw": predict_cw(observed),
         "repeat_pairs": pairs,
         "era_shifts": era_shifts(pairs, boats),
         "reproducibility": reproducibility(pairs, observed),

@@ -213,6 +213,27 @@ def test_ratio_of_means_is_not_biased_by_a_noisy_log(clean):
     assert abs(means.mean()) < 0.3 * expected
 
 
+def test_seconds_with_a_steering_peak_count_less(clean):
+    """A peak in the middle of a run cannot be cut, and always pulls upwards."""
+    peaks = Defects(steering_peaks=1.0, steering_peak_force=0.3, force_noise=0.08)
+    means, robust = (
+        cw_of(peaks, run_point=f'{{ estimator = "{name}" }}') / clean - 1.0
+        for name in ("ratio_of_means", "ratio_of_robust_means")
+    )
+    assert means.mean() > 0.004
+    assert abs(robust.mean()) < 0.6 * means.mean()
+
+
+def test_seconds_count_alike_where_none_stands_out(clean):
+    wind = '{ model = "oblique", ahead = 0.5, behind = 0.5, side = 0.2, averaging_s = 3 }'
+    calm = Defects(wind_m_s=3.0)
+    means, robust = (
+        cw_of(calm, run_point=f'{{ estimator = "{name}" }}', wind=wind)
+        for name in ("ratio_of_means", "ratio_of_robust_means")
+    )
+    np.testing.assert_allclose(robust, means, rtol=1e-5)
+
+
 def test_the_air_coefficient_of_the_whole_archive():
     settings = WorldSettings((2015,), 24, 20, 5, defects=lambda season: Defects(wind_m_s=5.0))
     wind = '{ model = "oblique", coefficients = "archive", side = 0.2 }'

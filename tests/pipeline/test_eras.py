@@ -5,7 +5,7 @@ import polars as pl
 import pytest
 from scipy import stats
 
-from pipeline.consistency.eras import era_shifts, median_interval
+from pipeline.consistency.repeats import era_shifts, estimate_median
 
 BOATS = pl.DataFrame({"fsn_no": [f"FSN{k}" for k in range(40)], "boat_type": ["like"] * 40})
 
@@ -34,7 +34,7 @@ SCATTER = np.linspace(-0.01, 0.01, 11)
 @pytest.mark.parametrize("n", [6, 9, 40])
 def test_the_interval_of_a_median_is_that_of_order_statistics(n):
     values = np.random.default_rng(n).normal(size=n)
-    found = median_interval(values)
+    found = estimate_median(values)
     independent = stats.quantile_test(values, p=0.5).confidence_interval(0.95)
     assert found == pytest.approx((np.median(values), independent.low, independent.high))
 

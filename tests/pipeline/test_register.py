@@ -13,6 +13,7 @@ from pipeline.method.definition import (
     shipped_methods,
 )
 from pipeline.method.writing import method_text
+from pipeline.register.printed import carried_lines, rebase_printed
 from pipeline.register.register import (
     DECISION_SCHEMA,
     NEWER_TOW_UNMEASURED,
@@ -158,3 +159,45 @@ def test_a_line_is_flagged_where_a_newer_tow_has_no_samples():
         lines = flag_unmeasured(register(), unmeasured, decisions)
         assert lines.filter(tow_id="t2")["flags"].to_list() == [flags]
         assert lines.filter(tow_id="t6")["flags"].to_list() == [[]]
+
+
+def printed(*lines):
+    """Lines of a printed register from (boat, day, A): eight men, B = 5 m/s."""
+    rows = [
+        {"fsn_no": boat, "rowers": 8, "crew_class": "H", "empty_thwart": "", "tow_date": day,
+         "declared_speed_m_s": 2.5, "a_kg_m": a, "b_m_s": 5.0, "cw_kg_m": a / 0.75}
+        for boat, day, a in lines
+    ]  # fmt: skip
+    return pl.DataFrame(rows, schema_overrides={"rowers": pl.Int64})
+
+
+FACTORS = pl.DataFrame({"season": [2010, 2011], "factor": [1.05, 1.04]})
+
+
+@pytest.mark.parametrize(
+    ("lines", "tow_id", "basis", "tow_date"),
+    [
+        ([("FSN1", dt.date(2014, 9, 1), 40.0)], None, "printed_not_rebased", dt.date(2014, 9, 1)),
+        ([("FSN1", dt.date(2011, 9, 1), 40.0)], "t2", "measured", dt.date(2014, 3, 1)),
+        ([("FSN1", dt.date(2014, 3, 1), 40.0)], "t2", "measured", dt.date(2014, 3, 1)),
+    ],
+    ids=["newer and without samples", "older", "of a tow with samples"],
+)
+def test_a_printed_line_counts_where_the_newest_tow_has_no_samples(lines, tow_id, basis, tow_date):
+    curves, tows = frames(ROWS)
+    crews = {"rowers": 8, "crew_class": "H"}
+    facts = tows.join(curves.select("tow_id", "fsn_no", "rowers", "crew_class"), on="tow_id")
+    method = shipped_method("rebased")
+    carried = carried_lines(printed(*lines), FACTORS, method, facts)
+    register = draft_register(curves, tows, BOATS, ON, method.validity, NO_DECISIONS, carried)
+    line = register.filter(fsn_no="FSN1", **crews).row(0, named=True)
+    assert (line["tow_id"], line["basis"], line["tow_date"]) == (tow_id, basis, tow_date)
+    assert line["status"] == "valid"
+
+
+def test_a_printed_line_is_rebased_by_the_log_factor_of_its_season():
+    method = shipped_method("rebased")
+    lines = printed(("FSN9", dt.date(2011, 9, 1), 40.0))
+    line = rebase_printed(lines, FACTORS, method).row(0, named=True)
+    assert (line["a_kg_m"], line["b_m_s"]) == pytest.approx((40.0 / 1.04**2, 5.0 * 1.04))
+    assert line["basis"] == "printed_rebased"

@@ -14,6 +14,7 @@ CHANGES = (
     {"window": '{ rule = "steady" }'},
     {"run_point": '{ estimator = "ratio_of_means" }'},
     {"run_point": '{ estimator = "ratio_of_means", inertia = "end_speeds" }'},
+    {"run_point": '{ estimator = "ratio_of_robust_means" }'},
     {"wind": '{ model = "head" }'},
     {"wind": '{ model = "oblique", averaging_s = 5 }'},
 )

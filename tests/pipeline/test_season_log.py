@@ -50,6 +50,14 @@ def renamed(tows, which):
     return tows.with_columns(once.alias("fsn_no"))
 
 
+def with_zeros(tows, sd_n):
+    """Tows whose load cell reads a zero of its own in each, N."""
+    zero_n = sd_n * np.random.default_rng(5).standard_normal(tows.height)
+    share = pl.Series(zero_n) / (pl.col("ln_cw").exp() * pl.col("declared_speed_m_s") ** 2)
+    bend = pl.col("q") - (1 + pl.col("q")) * share
+    return tows.with_columns(ln_cw=pl.col("ln_cw") + share.log1p(), q=bend)
+
+
 @pytest.mark.parametrize("factor", [0.94, 1.06])
 def test_a_scale_error_does_what_refitting_the_hyperbola_does(factor):
     a, b, v0 = 31.6, 4.44, 2.35
@@ -110,6 +118,15 @@ def test_an_interval_is_the_sum_of_repeat_tows_gps_and_what_is_assumed():
     row = alone.row(by_predicate=pl.col("season") == 2012, named=True)
     assert row["source"] == "gps"
     assert row["gps_sd"] > 0.95 * row["ln_sd"] > row["repeat_tows_sd"]
+
+
+def test_repeat_tows_show_a_zero_that_differs_from_tow_to_tow():
+    """It moves level and bend of a tow together, which nothing else between tows does."""
+    world, without = estimated(CLEAN, 1000)
+    found = estimate_season_factors(with_zeros(world.tows, 6.0))
+    assert without.tow_zero_n < 2.0
+    assert 4.0 < found.tow_zero_n < 8.0
+    assert found.tow_sd == pytest.approx(without.tow_sd, rel=0.4)
 
 
 def test_no_fault_is_seen_in_an_ordinary_archive():

@@ -19,7 +19,8 @@ def tows(**changed):
         "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0,
         "kappa": 2.86,
         "misfit_ratio": 0.0, "wind_ln_sd": None,
-        "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
+        "random_ratio": 0.0061, "random_dof": 96.0, "force_n": 250.0,
+        "calibrated": True, "log_sd": 0.0,
         "log_dof": np.inf, "tow_log_sd": 0.0,
         "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
@@ -95,10 +96,17 @@ def test_interval_takes_few_degrees_of_freedom_into_account():
 
 def test_repeat_tows_show_what_differs_between_tows_and_shrink_nothing_else():
     """What repeats share cancels in their difference (ISO 5725-1; GUM, type B)."""
-    few, many = (Assumed().beside_repeats(sd, 0.5 * sd) for sd in (0.0001, 0.02))
+    few, many = (Assumed().beside_repeats(sd, 0.0, 0.5 * sd) for sd in (0.0001, 0.02))
     held, other = (budget(tows(temperature_known=True), assumed) for assumed in (few, many))
     shared = pl.col("component").is_in(["force", "wind", "anemometer", "mass", "temperature"])
     assert (held.filter(shared)["u_ratio"] > 0.001).all()
     assert held.filter(shared)["u_ratio"].to_list() == other.filter(shared)["u_ratio"].to_list()
     assert u_of(other, "between_tows") == pytest.approx(0.02)
     assert u_of(other, "calibration") == pytest.approx(2.86 * 0.01)
+
+
+def test_a_zero_that_wanders_between_tows_counts_most_for_light_boats():
+    assumed = Assumed().beside_repeats(0.003, 2.0, 0.0)
+    light, heavy = (budget(tows(force_n=force), assumed) for force in (125.0, 500.0))
+    assert u_of(light, "between_tows") == pytest.approx(np.hypot(0.003, 2.0 / 125.0))
+    assert u_of(heavy, "between_tows") == pytest.approx(np.hypot(0.003, 2.0 / 500.0))

@@ -31,52 +31,53 @@ def test_figures_of_a_type_are_those_of_the_tables(built):
         for method in METHODS:
             own = {"method": method, "boat_type": boat_type}
             found = report.types[0]["under"][method]
-            lines = built.table("type_lines").filter(tows="newest", **own).drop("tows")
-            assert lines.height == len(found["lines"])
-            for line in found["lines"]:
-                key = {name: line[name] for name in ("quantity", "explaining", "within")}
-                row = lines.row(by_predicate=_where(key), named=True)
-                assert row.items() <= line.items()
-            test = built.table("type_homogeneity").filter(**own).row(0, named=True)
-            assert test.items() <= found["bends"][0].items()
-            outliers = built.table("type_outliers").filter(**own)
-            assert len(found["outside"]) == outliers["outside"].sum()
-
-
-def _where(key):
-    return pl.all_horizontal(*(pl.col(name) == value for name, value in key.items()))
+            rows = built.table("type_consistency").filter(**own)
+            assert [row["quantity"] for row in found["consistency"]] == [
+                "cw_standard_kg_m",
+                "b_m_s",
+                "a_kg_m",
+            ]
+            for row in found["consistency"]:
+                (kept,) = rows.filter(quantity=row["quantity"]).to_dicts()
+                assert kept.items() <= row.items()
+            stands_out = pl.col("cw_outside").fill_null(False) | pl.col("b_outside").fill_null(
+                False
+            )
+            outside = built.table("compared_tows").filter(stands_out, **own)
+            assert {row["tow_id"] for row in found["outside"]} == set(outside["tow_id"])
 
 
 def of(*types):
     """Statistics of types with the given slopes and verdicts, and nothing else to compare."""
-    key = {"quantity": "b_m_s", "explaining": "weight_kg", "within": "all", "reason": ""}
+    unknown = dict.fromkeys(("tow_speed_slope", "tow_speed_slope_lo", "tow_speed_slope_hi"))
+    key = {"quantity": "b_m_s"} | unknown
     return [
-        {
-            "lines": [key | slope],
-            "speed_trend": [{"reason": "few_boats"}],
-            "eras": [],
-            "bends": [{"equal_possible": bends}],
-        }
-        for slope, bends in types
+        {"consistency": [key | slope | {"verdict": verdict}], "eras": []}
+        for slope, verdict in types
     ]
 
 
 def slope(value, half):
-    return {"slope": value, "slope_lo": value - half, "slope_hi": value + half}
+    return {
+        "weight_slope": value,
+        "weight_slope_lo": value - half,
+        "weight_slope_hi": value + half,
+    }
 
 
 def test_types_differ_where_their_slopes_lie_further_apart_than_both_intervals():
     # One follows weight and in the other no trend is seen: no difference by that alone.
-    assert differences(*of((slope(1.0, 0.9), None), (slope(0.5, 0.9), None))) == []
-    assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.3), None))) == ["b_m_s weight_kg"]
-    assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.41), None))) == []
+    assert differences(*of((slope(1.0, 0.9), "open"), (slope(0.5, 0.9), "open"))) == []
+    apart = of((slope(1.0, 0.3), "open"), (slope(0.5, 0.3), "open"))
+    assert differences(*apart) == ["b_m_s weight_kg"]
+    assert differences(*of((slope(1.0, 0.3), "open"), (slope(0.5, 0.41), "open"))) == []
 
 
 def test_types_differ_by_a_verdict_only_where_both_have_one():
     same = slope(0.0, 1.0)
-    assert differences(*of((same, True), (same, False))) == ["bends"]
-    assert differences(*of((same, True), (same, None))) == []
-    assert differences(of((same, True), (same, True))[0]) == []
+    assert differences(*of((same, "equal"), (same, "differ"))) == ["b_m_s verdict"]
+    assert differences(*of((same, "equal"), (same, "open"))) == []
+    assert differences(of((same, "equal"), (same, "equal"))[0]) == []
 
 
 @pytest.mark.parametrize("name", ["Kuikensloep", "kuikensloep", " KUIKEN SLOEP "])
@@ -86,9 +87,8 @@ def test_a_type_is_found_whatever_its_case_and_blanks(built, name):
 
 def test_boats_without_a_type_have_a_page_without_claims(built):
     found = under(built, "unknown")
-    assert {line["reason"] for line in found["lines"]} == {"no_type"}
-    assert {row["reason"] for row in found["bends"] + found["speed_trend"]} == {"no_type"}
-    assert {row["equal_possible"] for row in found["bends"]} == {None}
+    assert {row["verdict"] for row in found["consistency"]} == {"no_type"}
+    assert {row["weight_slope"] for row in found["consistency"]} == {None}
 
 
 def test_an_unknown_name_lists_the_types_and_a_boat(built):
@@ -103,10 +103,8 @@ def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
     report = audit(built.store, [fsn_no])
     tables = {
         "tows": "tows",
-        "in_type": "type_outliers",
-        "pooled": "pooled_curves",
+        "in_type": "compared_tows",
         "repeat_pairs": "repeat_pairs",
-        "predicted": "predicted_cw",
         "register": "register",
     }
     for part, table in tables.items():

@@ -11,6 +11,7 @@ import pytest
 import pipeline.recompute.computed
 import pipeline.studies.ladder
 from pipeline.method.definition import parse_method, shipped_method
+from pipeline.register.changes import compare_lines
 from pipeline.register.replay import RaceRules
 from pipeline.tables.keys import LINE
 from tests.warehouse.edition_bench import diff, terms
@@ -228,3 +229,39 @@ def test_a_printed_line_of_an_earlier_tow_is_told_apart_from_the_newer_tow(bench
     printed = 31.6 / (1 - (before["declared_speed_m_s"] / 4.44) ** 2)
     ((_, _, factor), _) = causes(lines)[0]
     assert factor == pytest.approx(before["cw_kg_m"] / printed, rel=1e-9)
+
+
+def test_print_of_2014_is_held_against_the_method_of_that_year(bench_of_editions):
+    """Early in 2015 the tows of 2014 were recomputed: those steps are causes, not the print."""
+    bench = bench_of_editions
+    bench.rebuild((shipped_method("as-published-2014"), *AS_PUBLISHED))
+    curves = bench.store.read("curves", "as-published-2014").filter(season=2014)
+    tow = bench.store.read("tows").filter(tow_id=curves.drop_nulls("b_m_s")["tow_id"][0])
+    line, curve = tow.row(0, named=True), curves.filter(tow_id=tow["tow_id"]).row(0, named=True)
+    cells = [line[n] for n in ("fsn_no", "rowers", "crew_class")]
+    cells += [round(curve[n], 2) for n in ("a_kg_m", "b_m_s", "cw_kg_m")]
+    cells += [line["declared_speed_m_s"], line["tow_date"]]
+    file = bench.archive / "sloepregister" / "sloepregister_2014.csv"
+    file.write_text(f"{HEAD}\n{';'.join(map(str, cells))}\n", encoding="utf-8")
+    bench.rebuild(AS_PUBLISHED)
+    publish_printed(bench.store, 2014, terms("printed", dt.date(2014, 5, 1)))
+    bench.publish("a", "as-published")
+    lines = diff(bench.store, "printed", "a").filter(change="changed")
+    assert_factors_multiply(lines)
+    (found,) = causes(lines)
+    factors = {step or cause: factor for cause, step, factor in found}
+    assert factors.pop("reproduction") == pytest.approx(1, abs=1e-3)
+    assert {"window", "calibration", "wind"} <= factors.keys()
+
+
+def test_curves_that_agree_at_one_speed_alone_are_not_the_same(published):
+    register = read_edition(published.store, "2014-1").register.drop_nulls("b_m_s")
+    steeper = pl.col("b_m_s") * 0.97
+    ratio = (1 - (pl.col("declared_speed_m_s") / steeper) ** 2) / (
+        1 - (pl.col("declared_speed_m_s") / pl.col("b_m_s")) ** 2
+    )
+    bent = register.with_columns(pl.col("a_kg_m") * ratio, b_m_s=steeper)
+    lines = compare_lines(register, bent)
+    assert lines["cw_ratio"].to_list() == pytest.approx([1.0] * lines.height)
+    assert set(lines["change"]) == {"changed"}
+    assert (lines["cw_ratio_fast"] > 1.0005).all()

@@ -9,7 +9,6 @@ import polars as pl
 import pytest
 
 from tests.warehouse.edition_bench import diff
-from warehouse.editions import notes
 from warehouse.editions.compare import causes_of
 from warehouse.editions.lineage import lineage
 from warehouse.editions.sheets import verification_codes
@@ -96,12 +95,6 @@ def test_they_are_read_with_the_lines_that_were_printed(store):
     assert ("FSN106", "valid", "printed_not_rebased", 43.897) in lines
     assert ("FSN104", "excluded", None, None) in lines
     assert read_edition(store, "gedrukt-2014").method is None
-
-
-def test_the_words_of_a_version_stay():
-    """Published texts are made again with them: other words come in another folder."""
-    words = b"".join(f.read_bytes() for f in sorted((notes.TEMPLATES / "1").iterdir()))
-    assert hashlib.sha256(words).hexdigest().startswith("e05a517578f9f240")
 
 
 @pytest.mark.parametrize("name", EDITIONS)

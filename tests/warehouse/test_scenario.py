@@ -36,7 +36,7 @@ def test_a_draft_is_the_register_of_the_warehouse(scenario, built):
         )
 
 
-@pytest.mark.parametrize("table", ["reproducibility", "type_homogeneity"])
+@pytest.mark.parametrize("table", ["reproducibility", "type_consistency"])
 def test_statistics_are_those_of_the_warehouse(scenario, built, table):
     found = scenario.both(lambda draft: getattr(draft, table))
     assert_frame_equal(found, built.table(table).select(found.columns), check_row_order=False)
@@ -91,7 +91,7 @@ def test_a_method_that_no_tow_survives_is_shown_too(history, scenario, monkeypat
     summary = both.summary()
     assert summary["removed"] == summary["lines"] > 0
     assert summary["median_ratio"] is None
-    kinds = (lambda draft: draft.type_homogeneity, lambda draft: draft.reproducibility)
+    kinds = (lambda draft: draft.type_consistency, lambda draft: draft.reproducibility)
     for frame in (both.season_change(), *map(both.both, kinds)):
         assert isinstance(frame, pl.DataFrame)
     fsn_no = history.tows["fsn_no"][0]

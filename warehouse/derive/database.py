@@ -16,8 +16,7 @@ from pipeline.tables.schemas import ABOUT, STUDY, TABLES
 from pipeline.tables.views import VIEWS
 from warehouse.store.code import code_version
 from warehouse.store.files import file_sha256, written_beside
-from warehouse.store.package import package_is_whole, write_package
-from warehouse.store.store import Store, fingerprint
+from warehouse.store.store import Store
 
 DATABASE_TABLE: Final = "warehouse_database"
 """The tables in the file, and its hash."""
@@ -60,13 +59,10 @@ def describe_contents() -> str:
 def warehouse_database(
     tables: dict[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
 ) -> pl.DataFrame:
-    """All tables in one DuckDB file, swapped in whole; then those of the lake are described."""
+    """Write all tables into one DuckDB file, swapped in whole; return its contents and hash."""
     tables["about"] = _about(about_archive)
     tables["contents"] = _contents(tables)
     build_database(store.database, tables)
-    about = dict(tables["about"].rows())
-    files = {store.table_path(name): TABLES[name] for name in TABLES.keys() & tables.keys()}
-    write_package(store.table_folder, files, about, _sources(tables))
     sha256 = pl.lit(file_sha256(store.database)).alias("sha256")
     return tables["contents"].select("table", "rows", sha256)
 
@@ -142,16 +138,6 @@ def _about(about_archive: pl.DataFrame) -> pl.DataFrame:
     return pl.DataFrame({"key": list(about), "value": list(about.values())})
 
 
-def _sources(tables: Mapping[str, pl.DataFrame]) -> list[tuple[str, str]]:
-    """What the tables come from, each with a hash: the archive's files, and the methods."""
-    tows = tables["tows"]
-    hashes = sorted({*tows["samples_sha256"], *tows["second_sha256"].drop_nulls()})
-    seasons = tows["season"].to_list()
-    archive = f"samples of {tows.height} tows, {min(seasons)} to {max(seasons)}"
-    methods = tables["methods"].select(pl.format("method {}", "method"), "content_hash").rows()
-    return [(archive, fingerprint(hashes)), *methods]
-
-
 def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     """Every table with its rows and meaning, for those who open the database."""
     names = sorted(set(tables) & set(TABLES))
@@ -165,8 +151,7 @@ def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 
 def is_whole(store: Store) -> bool:
-    """Return whether database and data package are there, byte for byte as they were made."""
+    """Return whether the database is there, byte for byte as it was made."""
     made = store.read(DATABASE_TABLE)["sha256"][0]
     left = left_wal(store.database).exists()  # a reader would replay it
-    whole = store.database.exists() and not left and made == file_sha256(store.database)
-    return whole and package_is_whole(store.table_folder)
+    return store.database.exists() and not left and made == file_sha256(store.database)

@@ -14,14 +14,17 @@ from pipeline.recompute.facts import samples_files
 from pipeline.recompute.results import Recomputed
 from pipeline.register import due, replay
 from pipeline.register.changes import register_changes, steps_of_lines
+from pipeline.register.printed import carried_lines
 from pipeline.register.register import (
     CURVE_COLUMNS,
     LINE,
     as_ruled,
     draft_name,
     draft_register,
+    flag_unmeasured,
     lines_of_all_days,
     reference_day,
+    unmeasured_tows,
 )
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import RaceChanges, RegisterChanges
@@ -48,6 +51,9 @@ def register_tables(
     boats: pl.DataFrame,
     listed_boats: pl.DataFrame,
     listed_races: pl.DataFrame,
+    listed_tows: pl.DataFrame,
+    printed_registers: pl.DataFrame,
+    log_factors: pl.DataFrame,
     decisions: pl.DataFrame,
     published: Mapping[str, pl.DataFrame],
     correction_steps: pl.DataFrame,
@@ -55,16 +61,28 @@ def register_tables(
 ) -> dict[str, pl.DataFrame]:
     """Draft registers, what changes between registers, lineage, and who is due to be towed.
 
-    Drafts are compared with the first method's, by the steps from there. The published editions
-    stand beside the drafts.
+    The newest tow counts: where it has no samples, a line that the archive has in print is re-based
+    and stands in the draft; else the line is flagged. Drafts are compared with the first method's,
+    by the steps from there. The published editions stand beside the drafts.
     """
-    as_of, known = reference_day(tows, listed_races), (curves, tows, listed_boats, decisions)
-    lines = {method.name: lines_on(method, *known, as_of) for method in methods}
-    drafts = [_draft(method, own, tows) for method, own in lines.items()]
-    histories = [_history(method, curves, tows, decisions) for method in methods]
+    as_of = reference_day(tows, listed_races)
+    unmeasured = unmeasured_tows(listed_tows, printed_registers, tows, as_of)
+    printed = printed_registers.filter("has_valid_curve").sort("season", maintain_order=True)
+    lines, drafts, histories = {}, [], []
+    for method in methods:
+        own_curves = curves.filter(method=method.name)
+        factors = log_factors.filter(method=method.name)
+        carried = carried_lines(printed, factors, method, tows)
+        rule = method.validity
+        on_day = draft_register(own_curves, tows, listed_boats, as_of, rule, decisions, carried)
+        in_time = lines_of_all_days(own_curves, tows, rule, decisions, carried)
+        lines[method.name] = flag_unmeasured(on_day, unmeasured, decisions)
+        drafts.append(_draft(method.name, lines[method.name], tows))
+        histories.append(history_rows(in_time, draft_name(method.name), method.name))
     register = pl.concat(drafts)
     ladders = correction_steps.filter(pl.col("position") > 0, from_method=methods[0].name)
-    parts = (steps_of_lines(d, ladders.filter(to_method=d["method"][0])) for d in drafts[1:])
+    first = drafts[0]
+    parts = (steps_of_lines(first, ladders.filter(to_method=d["method"][0])) for d in drafts[1:])
     changes = [register_changes(drafts[0], *both) for both in zip(drafts[1:], parts, strict=True)]
     hashes = {method.name: method.content_hash for method in methods}
     made = {
@@ -116,19 +134,6 @@ def due_of_lines(
     return pl.concat(named)
 
 
-def lines_on(
-    method: Method,
-    curves: pl.DataFrame,
-    tows: pl.DataFrame,
-    crews: pl.DataFrame,
-    decisions: pl.DataFrame,
-    on_date: dt.date,
-) -> pl.DataFrame:
-    """The lines of a method on a day, after the decisions of people."""
-    own = curves.filter(pl.col("method") == method.name)
-    return draft_register(own, tows, crews, on_date, method.validity, decisions)
-
-
 def _draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     edition, name = pl.lit(draft_name(method)), pl.lit(method)
     code = pl.lit(None, pl.String).alias("verification_code")
@@ -136,14 +141,6 @@ def _draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame
         tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left"
     )
     return measured.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
-
-
-def _history(
-    method: Method, curves: pl.DataFrame, tows: pl.DataFrame, decisions: pl.DataFrame
-) -> pl.DataFrame:
-    own = curves.filter(pl.col("method") == method.name)
-    lines = lines_of_all_days(own, tows, method.validity, decisions)
-    return history_rows(lines, draft_name(method.name), method.name)
 
 
 # Published editions

@@ -1,10 +1,10 @@
 """Two editions side by side: every line with its causes, and what it does to races.
 
-The numbers come from `pipeline.register.changes`, `pipeline.studies.ladder` and
-`pipeline.register.replay`. Here is decided what two editions do not share: tow, files, method,
-code. The steps of the method are computed with the code and blocks of today; what they leave
-unexplained is one factor, named after what else differs. An edition holds its comparison with the
-one before.
+A change is explained in the order of history. A printed line is first held against its own tow
+under the method that was in force when it was printed; then the old line's tow is re-based, step by
+step, to the new method; what remains is another tow, other input, or other code. The numbers come
+from `pipeline.register.changes`, `pipeline.studies.ladder` and `pipeline.register.replay`. An
+edition holds its comparison with the one before.
 """
 
 from collections.abc import Collection
@@ -15,7 +15,7 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.curve import cw
-from pipeline.method.definition import RUNS_ALONE, Method, shipped_method
+from pipeline.method.definition import RUNS_ALONE, method_in_force
 from pipeline.races.power import curve_of_lines
 from pipeline.register.changes import (
     NO_FACTOR,
@@ -25,28 +25,30 @@ from pipeline.register.changes import (
     largest_first,
     steps_of_lines,
 )
-from pipeline.register.register import LINE, NO_EMPTY_THWART
+from pipeline.register.printed import rebase_printed
+from pipeline.register.register import LINE, MEASURED, NO_EMPTY_THWART, TOW_DAY
 from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.registers import lines_in_time
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today
-from warehouse.store.editions import CHANGES, MEASURED, Edition
+from warehouse.store.editions import CHANGES, Edition
+from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
-STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
-NO_STEPS: Final = pl.DataFrame(schema={n: dtypes(CorrectionSteps)[n] for n in STEP_COLUMNS})
+LADDER: Final = ("tow_id", "position", "step", "factor", "cw_kg_m")
+NO_LADDER: Final = pl.DataFrame(schema={name: dtypes(CorrectionSteps)[name] for name in LADDER})
 CAUSE: Final = pl.Struct({name: PART_SCHEMA[name] for name in ("cause", "step", "factor")})
 LARGEST: Final = 10
-AS_PUBLISHED: Final = "as-published"
-"""The method that does what was done in each season: what is printed is held against it."""
 REPRODUCTION: Final = "reproduction"
-"""From print to the same tow as published: what was printed and cannot be explained."""
+"""From a printed line to its tow by the method then in force: what print does not explain."""
+CLOSED_FORM: Final = "closed_form"
+"""The log error of the season, on a printed line whose tow has no samples."""
 
 
 def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
-    """Compares two editions line by line, with causes whose factors multiply to the change.
+    """Compare two editions line by line, with causes whose factors multiply to the change.
 
     With the edition before it an edition was compared when it was published; that is part of it.
 
@@ -56,89 +58,106 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """
     if CHANGES in new.tables and new.manifest.previous == old.manifest.edition:
         return new.tables[CHANGES]
-    start = old.method or shipped_method(AS_PUBLISHED)
-    steps = _steps(store, start, old, new)
-    printed = _printed_parts(steps, old, new)
-    parts = pl.concat([printed, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
-    manifests = old.manifest, new.manifest
-    both_towed = all("tows" in edition.tables for edition in (old, new))
-    same = same_tows(old.tables, new.tables) if both_towed else frozenset[str]()
+    before, after = _with_printed_tows(old, new), new.register
+    ladder = _ladder(store, old, new)
+    printed = _printed_parts(before, ladder, new) if old.method is None else NO_PARTS
+    steps = steps_of_lines(before, ladder.filter(pl.col("position") > 0))
+    parts = pl.concat([printed, steps], how="vertical_relaxed")
+
+    have_tows = "tows" in old.tables and "tows" in new.tables
+    same = same_tows(old.tables, new.tables) if have_tows else frozenset[str]()
     ground = grounds(
-        old.register,
-        new.register,
+        before,
+        after,
         same,
-        others=any(len(same) < one.tables["tows"].height for one in (old, new) if both_towed),
-        method=len({m.method_hash for m in manifests}) > 1,
-        code=len({m.code_version for m in manifests}) > 1,
-        separated=steps["tow_id"],
-        computed=printed,
+        others=any(len(same) < one.tables["tows"].height for one in (old, new) if have_tows),
+        method=old.manifest.method_hash != new.manifest.method_hash,
+        code=old.manifest.code_version != new.manifest.code_version,
+        rebased=parts,
     )
-    lines = compare_lines(old.register, new.register, parts, ground)
-    columns = lines.columns
+    lines = compare_lines(before, after, parts, ground)
+    beside = lines.columns
     for side, edition in (("old", old), ("new", new)):
-        said = (pl.col(name).alias(f"{side}_{name}") for name in ("name", "status"))
-        mine = edition.register.select(*LINE, *said)
-        lines = lines.join(mine, on=LINE, how="left", maintain_order="left")
-    named = pl.coalesce("new_name", "old_name").alias("name")
-    return lines.sort(LINE).select(*columns, named, "old_status", "new_status")
-
-
-def _printed_parts(rungs: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
-    """Where another tow counts than the printed one: from print to that tow as published.
-
-    Known where the new edition has one tow of that day and line.
-
-    Args:
-        rungs: the ladder from `AS_PUBLISHED`.
-        old, new: the editions; the old one may be printed.
-    """
-    if old.method is not None or rungs.is_empty():
-        return NO_PARTS
-    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
-    day = [*LINE, "tow_date"]
-    printed = (
-        new.tables["tows"]
-        .select("tow_id", *LINE[:-1], thwart, "tow_date", v0="declared_speed_m_s")
-        .join(
-            rungs.filter(position=0).select("tow_id", first="cw_kg_m"),
-            on="tow_id",
-            maintain_order="left",
+        facts = edition.register.select(
+            *LINE, pl.col("name").alias(f"{side}_name"), pl.col("status").alias(f"{side}_status")
         )
-        .join(old.register.drop("tow_id"), on=day, maintain_order="left")
-        .unique(day, keep="none", maintain_order=True)
-        .join(new.register, on="tow_id", how="anti")
-    )
-    before = cw(*curve_of_lines(printed), printed["v0"].to_numpy())
-    known = printed.with_columns(factor=pl.col("first") / pl.Series(before))
-    step = pl.lit(None, pl.String)
-    return known.filter(pl.col("factor").is_finite()).select(
-        *LINE, cause=pl.lit(REPRODUCTION), step=step, factor="factor"
-    )
+        lines = lines.join(facts, on=LINE, how="left", maintain_order="left")
+    name = pl.coalesce("new_name", "old_name").alias("name")
+    return lines.sort(LINE).select(*beside, name, "old_status", "new_status")
 
 
-def _steps(store: Store, start: Method, old: Edition, new: Edition) -> pl.DataFrame:
-    """The ladder to the new method, on the new edition's tows that are still there.
+def _with_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
+    """The old lines; each printed one with the tow of that day and line, where there is one."""
+    if old.method is not None or "tows" not in new.tables:
+        return old.register
+    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
+    tows = new.tables["tows"].select("tow_id", *LINE[:-1], thwart, "tow_date")
+    once = tows.unique(TOW_DAY, keep="none", maintain_order=True)
+    return old.register.drop("tow_id").join(once, on=TOW_DAY, how="left", maintain_order="left")
 
-    It begins at the old method; from print, at `AS_PUBLISHED`.
+
+def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+    """Every step from the old method to the new one, on the new edition's tows still there.
+
+    From print it begins at the method that was in force when the register was printed.
     """
     if new.method is None or old.manifest.method_hash == new.manifest.method_hash:
-        return NO_STEPS
+        return NO_LADDER
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
 
     today = tables_of_today(store)
     there = pl.col("tow_id").is_in(list(same_tows(new.tables, today)))
     tows, runs = (table.filter(there) for table in today.values())
     if tows.is_empty():
-        return NO_STEPS
+        return NO_LADDER
     from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
 
+    printed_in = old.manifest.printed_in or old.manifest.valid_from.year
+    known = KnownMethods.of(store)
+    methods = [known.get(name) for name in known.names]
+    start = old.method or method_in_force(printed_in, methods)
+    if start is None:
+        return NO_LADDER
     blocks = stack_blocks(intake.all_blocks(store), runs)
     before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
     is_known = after is not None and (before is not None or old.method is None)
     return ladder(start, new.method, tows, blocks, (before, after) if is_known else None)
 
 
-# What the known parts of a change leave unexplained is named after its ground
+def _printed_parts(printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition) -> pl.DataFrame:
+    """What is known of printed lines before the steps of the method.
+
+    With samples: from print to the tow by the method then in force. Without: the log error of its
+    season under the new method, in closed form.
+    """
+    if new.method is None:
+        return NO_PARTS
+    lines = printed.drop_nulls("cw_kg_m")
+    computed = ladder.filter(position=0).select("tow_id", computed_cw="cw_kg_m")
+    speeds = new.tables["tows"].select("tow_id", tow_speed="declared_speed_m_s")
+    measured = lines.join(computed, on="tow_id", maintain_order="left").join(
+        speeds, on="tow_id", maintain_order="left"
+    )
+    at_tow_speed = cw(*curve_of_lines(measured), measured["tow_speed"].to_numpy())
+    reproduction = measured["computed_cw"] / pl.Series(at_tow_speed, dtype=pl.Float64)
+
+    unmeasured = lines.join(measured, on=LINE, how="anti").select(lines.columns)
+    rebased = rebase_printed(unmeasured, new.tables["log_factors"], new.method)
+    unmeasured = unmeasured.join(rebased, on=LINE, how="semi", maintain_order="left")
+    speed = unmeasured["declared_speed_m_s"].to_numpy()
+    closed_form = cw(*curve_of_lines(rebased), speed) / cw(*curve_of_lines(unmeasured), speed)
+
+    def parts(of: pl.DataFrame, cause: str, factor: pl.Series) -> pl.DataFrame:
+        step = pl.lit(None, pl.String).alias("step")
+        named = of.select(*LINE, pl.lit(cause).alias("cause"), step, factor.alias("factor"))
+        return named.filter(pl.col("factor").is_finite())
+
+    return pl.concat(
+        [
+            parts(measured, REPRODUCTION, reproduction),
+            parts(unmeasured, CLOSED_FORM, pl.Series(closed_form, dtype=pl.Float64)),
+        ]
+    )
 
 
 def grounds(
@@ -149,51 +168,56 @@ def grounds(
     others: bool,
     method: bool,
     code: bool,
-    separated: Collection[str] = (),
-    computed: pl.DataFrame = NO_PARTS,
+    rebased: pl.DataFrame = NO_PARTS,
 ) -> pl.DataFrame:
-    """Per line of two registers the `ground` of what known parts do not explain.
+    """Name the factor of each line that its known causes leave over.
 
     Args:
         old, new: the registers; a line of which the `basis` is not `MEASURED` is of print.
         same: tows with the same input in both.
-        others: any tow has another input.
+        others: whether any tow has another input.
         method, code: whether these differ.
-        separated: tows of which the work of the method is a known part.
-        computed: lines of which the printed tow was computed.
+        rebased: parts of changes; a line that has any was re-based to the new method.
+
+    Returns:
+        `LINE` and its `ground`.
     """
     facts = (*LINE, "tow_id", "tow_date", INPUTS_HASH, "basis")
-    mine = computed.select(LINE).with_columns(is_computed=pl.lit(value=True))
-    pairs = (
-        old.select(facts)
-        .join(new.select(facts), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left")
-        .join(mine, on=LINE, how="left", maintain_order="left")
+    pairs = old.select(facts).join(
+        new.select(facts), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
     )
+    is_rebased = {tuple(line) for line in rebased.select(LINE).rows()}
+    named = []
+    for pair in pairs.iter_rows(named=True):
+        line = tuple(pair[name] for name in LINE)
+        is_print = pair["basis"] != MEASURED or pair["basis_new"] != MEASURED
+        is_other_tow = (
+            pair["tow_date" if is_print else "tow_id"]
+            != (pair["tow_date_new" if is_print else "tow_id_new"])
+        )
+        is_other_input = pair["tow_id_new"] not in same
+        if line in is_rebased or not (method or is_print):
+            if is_other_tow:
+                ground = "tow"
+            elif is_print:
+                ground = REPRODUCTION if pair["tow_id"] else CLOSED_FORM
+            else:
+                ground = _input_or_code(is_other_input, others, code)
+        elif is_print:
+            ground = "printed_and_tow" if is_other_tow else "printed"
+        else:
+            ground = "unseparated" if is_other_tow or is_other_input or code else "method"
+        named.append((*line, ground))
+    schema = {name: old.schema[name] for name in LINE} | {"ground": pl.String()}
+    return pl.DataFrame(named, schema=schema, orient="row")
 
-    def moved(name: str) -> pl.Expr:
-        return pl.col(name).ne_missing(pl.col(f"{name}_new"))
 
-    of_print = pl.any_horizontal(pl.col("basis", "basis_new").ne_missing(MEASURED))
-    own = ~pl.col("tow_id_new").is_in(list(same))
-    stepped = pl.col("tow_id_new").is_in(list(separated))
-    redefined = ~stepped & method
-    holds = {
-        "closed_form": of_print & ~moved(INPUTS_HASH),
-        "tow": pl.when(of_print).then(pl.col("is_computed") & stepped).otherwise(moved("tow_id")),
-        "printed_and_tow": of_print & moved("tow_date"),
-        REPRODUCTION: of_print & stepped,
-        "printed": of_print,
-        "unseparated": redefined & (own | code),
-        "method": redefined,
-        "input_and_code": own & code,
-        "input": own,
-        "code_or_other_input": pl.lit(others and code),
-        "other_input": pl.lit(others),
-        "code": pl.lit(code),
-        "unexplained": pl.lit(value=True),
-    }
-    first = pl.coalesce(pl.when(it).then(pl.lit(ground)) for ground, it in holds.items())
-    return pairs.select(*LINE, ground=first)
+def _input_or_code(is_other_input: bool, others: bool, code: bool) -> str:
+    if is_other_input:
+        return "input_and_code" if code else "input"
+    if others:
+        return "code_or_other_input" if code else "other_input"
+    return "code" if code else "unexplained"
 
 
 # Summary
@@ -240,18 +264,18 @@ class DiffReport:
 
 
 def report(old: Edition, new: Edition, lines: pl.DataFrame) -> DiffReport:
-    """Counts, who gains and loses, causes, and every line of `compare`."""
+    """Count who gains and loses, list causes, and every line of `compare`."""
     compared = lines.drop_nulls("cw_ratio")
     moved = compared.filter(change="changed")
-    gains = pl.col("power_ratio") > 1
+    is_gain = pl.col("power_ratio") > 1
     return DiffReport(
         from_edition=old.manifest.edition,
         to_edition=new.manifest.edition,
-        simulated=any(edition.manifest.simulated for edition in (old, new)),
+        simulated=old.manifest.simulated or new.manifest.simulated,
         lines=lines.height,
         changes=dict(lines["change"].value_counts().sort("change").rows()),
-        gain=_group(moved.filter(gains)),
-        loss=_group(moved.filter(~gains)),
+        gain=_summarise(moved.filter(is_gain)),
+        loss=_summarise(moved.filter(~is_gain)),
         exceeds_interval=int(moved["exceeds_interval"].fill_null(False).sum()),
         interval_unknown=int(moved["exceeds_interval"].null_count()),
         runs_alone=[
@@ -266,7 +290,7 @@ def report(old: Edition, new: Edition, lines: pl.DataFrame) -> DiffReport:
 
 
 def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules) -> DiffReport:
-    """Compares two editions, with power, rank, podium and winner of every race of the archive.
+    """Compare two editions, with power, rank, podium and winner of every race of the archive.
 
     Raises:
         MissingKnowledgeError: the rules ask for what is not known.
@@ -284,7 +308,7 @@ def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules
     )
 
 
-def _group(lines: pl.DataFrame) -> Row:
+def _summarise(lines: pl.DataFrame) -> Row:
     power, seconds = lines.select("power_ratio", "gain_in_two_hours_s").median().row(0)
     return {
         "lines": lines.height,
@@ -295,13 +319,13 @@ def _group(lines: pl.DataFrame) -> Row:
 
 
 def parts_of(lines: pl.DataFrame) -> pl.DataFrame:
-    """The causes of lines, one a row: `LINE`, `cause`, `step` and `factor`; null where none is."""
+    """Return the causes of lines, one a row: `LINE`, `cause`, `step` and `factor`."""
     causes = pl.col("causes").str.json_decode(pl.List(CAUSE))
     return lines.select(*LINE, causes).explode("causes").unnest("causes")
 
 
 def causes_of(lines: pl.DataFrame) -> list[Row]:
-    """What each cause, or step of a method, did; that with the most lines first.
+    """Return what each cause, or step of a method, did; that with the most lines first.
 
     Returns:
         Rows of `cause`, `step` (where a method is the cause), `lines` (how many it moved), and of
@@ -324,14 +348,9 @@ def causes_of(lines: pl.DataFrame) -> list[Row]:
 
 
 def _rows(lines: pl.DataFrame) -> list[Row]:
-    """Lines with the causes that changed something."""
+    """Lines as rows, each with the causes that moved it."""
     rows = lines.with_columns(pl.col("causes").str.json_decode(pl.List(CAUSE))).to_dicts()
-    return [row | {"causes": list(map(_named, filter(_moves, row["causes"])))} for row in rows]
-
-
-def _moves(cause: Row) -> bool:
-    return abs(float(cause["factor"]) - 1.0) > NO_FACTOR
-
-
-def _named(cause: Row) -> Row:
-    return {name: value for name, value in cause.items() if value is not None}
+    for row in rows:
+        moved = [cause for cause in row["causes"] if abs(cause["factor"] - 1.0) > NO_FACTOR]
+        row["causes"] = [{k: v for k, v in cause.items() if v is not None} for cause in moved]
+    return rows

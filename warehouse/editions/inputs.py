@@ -4,12 +4,14 @@ A number depends on its own tow, and under some methods on all tows at once (a c
 whole archive). Which files still are what they were is `verify`'s.
 """
 
+import csv
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Final
 
 import polars as pl
 
-from pipeline.recompute.facts import samples_files
+from warehouse.store.editions import Manifest
 from warehouse.store.store import Store, fingerprint
 
 JUDGED: Final = ("doubts", "unusual")
@@ -23,7 +25,8 @@ NOT_INPUT: Final = (
 """What a tow is called or said to be does not change its numbers; its doubts follow from others."""
 
 INPUTS_HASH: Final = "inputs_sha256"
-SAMPLES, LIST, REGISTER = "meetdata", "lijst", "register"
+OLDER_SOURCES: Final = "inputs.csv"
+"""What editions up to version 1.0.0 were made from; since then the manifest and the tows say it."""
 
 
 def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
@@ -62,14 +65,24 @@ def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) 
     return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
 
 
-def listed_inputs(store: Store) -> pl.DataFrame:
-    """The lists of the archive, as rows of `input_files`."""
+def list_files(store: Store) -> dict[str, str]:
+    """Return the lists of the archive, by path, with the SHA-256 of each."""
     is_list = pl.col("path").str.contains(r"^(sleeplijsten/|sloepregister/sloependata|archief)")
-    listed = store.read("listed_files").filter(is_list)
-    return listed.select("path", "sha256", pl.lit(LIST).alias("kind"))
+    listed = store.read("listed_files").filter(is_list).sort("path")
+    return dict(listed.select("path", "sha256").rows())
 
 
-def input_files(tows: pl.DataFrame, lists: pl.DataFrame) -> pl.DataFrame:
-    """The files behind an edition, `path, sha256, kind`: samples of its tows, and these lists."""
-    files = samples_files(tows).select("path", "sha256").unique()
-    return pl.concat([files.with_columns(pl.lit(SAMPLES).alias("kind")), lists]).sort("path")
+def list_sources(path: Path, manifest: Manifest) -> dict[str, str]:
+    """Return the lists, or the printed register, that an edition was made from, with SHA-256.
+
+    Editions of before have them in `inputs.csv`. A row of another width was changed, which the
+    hash of that file shows.
+    """
+    if manifest.sources:
+        return manifest.sources
+    older = path / OLDER_SOURCES
+    if OLDER_SOURCES not in manifest.files or not older.is_file():
+        return {}
+    text = older.read_text(encoding="utf-8-sig", errors="replace")
+    rows = [row for row in csv.reader(text.splitlines(), delimiter=";") if len(row) == 3]
+    return {file: sha256 for file, kind, sha256 in rows[1:] if kind != "meetdata"}

@@ -1,10 +1,9 @@
-"""From a printed line of an edition to the files, runs and seconds behind it.
+"""From a line of an edition to the files, runs and seconds behind it.
 
 Everything is read from the edition itself, so it holds however archive and warehouse have changed.
 """
 
 from dataclasses import dataclass
-from typing import Final
 
 import polars as pl
 
@@ -13,10 +12,8 @@ from pipeline.register.register import LINE
 from pipeline.tables.row import Row
 from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed
 from warehouse.store.boats import choose_boat, find_boats
-from warehouse.store.editions import Edition, Manifest, edition_path, read_edition
+from warehouse.store.editions import Manifest, edition_path, read_edition
 from warehouse.store.store import Store
-
-SAID: Final = Manifest.model_fields.keys() - {"files"}
 
 
 @dataclass(frozen=True)
@@ -24,7 +21,7 @@ class Lineage:
     """What the lines of a boat in an edition were made from.
 
     Attributes:
-        about: what the edition says of itself, but for hashes of its tables and files.
+        about: what the edition says of itself, but for the hashes of its files.
         folder: where it lies.
         lines: the boat's lines, each with the `line` itself, as it is `printed` by header, its
             verification `code`, its `tow`, `path` and `sha256` of its samples `files`, its `runs`
@@ -38,7 +35,7 @@ class Lineage:
 
 
 def lineage(store: Store, edition: str, boat: str) -> Lineage:
-    """What the lines of a boat, by number or name, were made from.
+    """Return what the lines of a boat, by number or name, were made from.
 
     Raises:
         MissingKnowledgeError: there is no such edition, the boat is not in it, or several boats
@@ -50,28 +47,31 @@ def lineage(store: Store, edition: str, boat: str) -> Lineage:
         raise MissingKnowledgeError(
             "boat {} is not in edition {}; its register.csv lists the boats", boat, edition
         )
-    lines = published.register.filter(pl.col("fsn_no") == choose_boat(boats, boat))
-    return Lineage(
-        about=published.manifest.model_dump(mode="json", include=SAID),
-        folder=str(edition_path(store, edition)),
-        lines=[_line(published, row) for row in lines.sort(LINE).iter_rows(named=True)],
-    )
 
+    def rows_of_tow(table: str, tow_id: str | None) -> list[Row]:
+        frame = published.tables.get(table)
+        return [] if frame is None else frame.filter(tow_id=tow_id).to_dicts()
 
-def _line(edition: Edition, row: Row) -> Row:
-    def of_tow(table: str) -> list[Row]:
-        frame = edition.tables.get(table)
-        return [] if frame is None else frame.filter(tow_id=row["tow_id"]).to_dicts()
-
-    frame = pl.DataFrame([row], schema=edition.register.schema)
-    tow = next(iter(of_tow("tows")), None)
-    files = [(tow[f"{n}_path"], tow[f"{n}_sha256"]) for n in ("samples", "second")] if tow else []
-    return {
-        "line": row,
-        "printed": printed(frame, REGISTER_FIELDS).row(0, named=True),
-        "code": row[CODE_FIELD.column],
-        "tow": tow,
-        "files": [{"path": path, "sha256": sha256} for path, sha256 in files if path],
-        "runs": of_tow("run_points"),
-        "curve": next(iter(of_tow("curves")), None),
-    }
+    own = published.register.filter(pl.col("fsn_no") == choose_boat(boats, boat)).sort(LINE)
+    lines = []
+    for line, cells in zip(own.to_dicts(), printed(own, REGISTER_FIELDS).to_dicts(), strict=True):
+        tow = next(iter(rows_of_tow("tows", line["tow_id"])), None)
+        files = [
+            {"path": tow[f"{kind}_path"], "sha256": tow[f"{kind}_sha256"]}
+            for kind in ("samples", "second")
+            if tow and tow[f"{kind}_path"]
+        ]
+        lines.append(
+            {
+                "line": line,
+                "printed": cells,
+                "code": line[CODE_FIELD.column],
+                "tow": tow,
+                "files": files,
+                "runs": rows_of_tow("run_points", line["tow_id"]),
+                "curve": next(iter(rows_of_tow("curves", line["tow_id"])), None),
+            }
+        )
+    said = Manifest.model_fields.keys() - {"files"}
+    about = published.manifest.model_dump(mode="json", include=said)
+    return Lineage(about, str(edition_path(store, edition)), lines)

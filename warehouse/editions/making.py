@@ -1,8 +1,8 @@
-"""An edition as archive and code of today give it: to publish it, or to see whether it still is so.
+"""The tables and files of an edition: from the samples and lists of an archive, and the same again.
 
-Which tow counts is decided in `pipeline.register.register`; here the facts of its tow are put
-beside it, and numbers are left out where no valid curve is. Nothing but samples, lists and blocks
-is read: tables that a rebuild made of them are not. Sheets and texts follow from the tables.
+Which tow counts is decided in `pipeline.register.register` and, between measured and printed lines,
+in `pipeline.register.printed`. Only samples, lists and blocks are read, no tables that a rebuild
+made of them; sheets and texts follow from the tables of the edition.
 """
 
 import datetime as dt
@@ -20,11 +20,14 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
 from pipeline.method.writing import method_text
 from pipeline.recompute.recompute import recompute
+from pipeline.register.printed import NOT_REBASED, carried_lines
 from pipeline.register.register import (
     LINE,
     NEWER_TOW_UNMEASURED,
+    TOW_DAY,
     draft_register,
     flag_unmeasured,
+    unmeasured_tows,
 )
 from pipeline.tables.archive import Boats
 from pipeline.tables.frames import dtypes
@@ -33,26 +36,18 @@ from pipeline.tables.register import Register
 from pipeline.tables.schemas import conform
 from warehouse.derive.registers import decisions_of, members_of
 from warehouse.editions import notes, sheets
+from warehouse.editions import printed as prints
 from warehouse.editions.compare import compare
-from warehouse.editions.inputs import INPUTS_HASH, JUDGED, tables_of_today
-from warehouse.editions.printed import (
-    NOT_REBASED,
-    PRINTED_METHOD,
-    carry_over,
-    printed_lines,
+from warehouse.editions.inputs import (
+    INPUTS_HASH,
+    JUDGED,
+    list_sources,
+    tables_of_today,
 )
 from warehouse.intake import seasons as intake
 from warehouse.store import decisions as decided
+from warehouse.store import editions as folder
 from warehouse.store.editions import (
-    CHANGES,
-    CSV,
-    DECISIONS,
-    INPUTS,
-    MANIFEST,
-    MEASURED,
-    METHOD,
-    PARQUET,
-    XLSX,
     Edition,
     Manifest,
     edition_path,
@@ -67,89 +62,56 @@ LINE_SCHEMA: Final = {
     INPUTS_HASH: pl.String(),
     "basis": pl.String(),
 }
-"""What an edition says of a line, but for its verification code."""
+"""Columns of a line of an edition, but for its verification code."""
+
 NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-
 MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
-"""What a method makes of the tows, and an edition keeps."""
+"""Tables that a method makes of the tows, and that an edition keeps."""
 
 
-def recomputed(
-    store: Store,
-    manifest: Manifest,
-    method: Method,
-    decisions: pl.DataFrame,
-    never_towed: pl.DataFrame,
-    unmeasured: pl.DataFrame,
-    judged: pl.DataFrame | None = None,
-    counting: Collection[str] = ("valid",),
+def make_edition(
+    store: Store, manifest: Manifest, method: Method, counting: Collection[str] = ("valid",)
 ) -> Edition:
-    """The edition that a method gives.
+    """Make the edition that a method gives of the archive as it is now.
 
     Args:
         store: the data folder.
-        manifest: its day, and the printed edition of which lines are carried over.
+        manifest: its days, and the printed edition of which lines are carried over.
         method: the method.
-        decisions: those about tows.
-        never_towed: boats with their crews of which lines without a tow are made.
-        unmeasured: rows of `unmeasured_tows`, the newest tows that have no samples.
-        judged: the tows to take, with what was judged of them; all, as they are judged now, when
-            left out.
         counting: statuses of lines that have numbers.
+
+    Raises:
+        MissingKnowledgeError: a decision is about a tow that is not in the warehouse.
     """
+    decisions = decided.decision_table(decisions_up_to(store, manifest.published_on))
     today = tables_of_today(store)
-    if judged is not None:
-        today = {name: t.join(judged, on="tow_id", how="semi") for name, t in today.items()}
-    tows, runs = today.values()
-    if judged is not None:
-        tows = tows.drop(JUDGED, strict=False).join(judged, on="tow_id", maintain_order="left")
-    blocks = stack_blocks(intake.all_blocks(store), runs)
-    made = recompute(method, tows, blocks, with_bands=False)
-    draft = draft_register(
-        made.curves, tows, never_towed, manifest.valid_from, method.validity, decisions
-    )
-    lines = _with_facts(draft, tows, counting)
-    if manifest.carried_from is not None:
-        printed = read_edition(store, manifest.carried_from)
-        lines = carry_over(lines, printed, made.log_factors, method, tows, manifest.valid_from)
-    lines = flag_unmeasured(lines, unmeasured, decisions)
-    tables = {
-        **today,
-        **{name: conform(name, getattr(made, name)) for name in MADE},
-        "ensemble": conform("ensemble", members_of(method, made)).join(
-            lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
-        ),
-        "register": _completed(store, lines, manifest, method),
-    }
-    return Edition(manifest, tables, method)
+    unknown = decisions.join(today["tows"], on="tow_id", how="anti")["tow_id"].to_list()
+    if unknown:
+        raise MissingKnowledgeError(
+            "{} decides about {}, which is not a tow of the warehouse; mend the "
+            "sleep_id, or take the decision out",
+            decided.FILE_NAME,
+            ", ".join(unknown),
+        )
+    crews = store.read("listed_boats")
+    printed = store.read("printed_registers")
+    listed = store.read("listed_tows")
+    unmeasured = unmeasured_tows(listed, printed, today["tows"], manifest.valid_from)
+    return _recompute(store, manifest, method, today, decisions, crews, unmeasured, counting)
 
 
-def as_printed(store: Store, manifest: Manifest, path: str) -> Edition:
-    """The edition that a printed register of the archive gives."""
-    lines = printed_lines(store, path)
-    return Edition(manifest, {"register": _completed(store, lines, manifest, None)}, None)
+def make_printed(store: Store, manifest: Manifest, path: str) -> Edition:
+    """Make the edition that a printed register of the archive gives."""
+    lines = prints.printed_lines(store, path)
+    return Edition(manifest, {"register": _complete(store, lines, manifest, None)}, None)
 
 
-def with_changes(store: Store, edition: Edition) -> Edition:
-    """The edition with its comparison with the one before, where there is one."""
-    previous = _previous(store, edition)
-    if previous is None:
-        return edition
-    changes = compare(store, previous, edition)
-    return replace(edition, tables={**edition.tables, CHANGES: changes})
+def make_again(store: Store, edition: Edition) -> Edition:
+    """Make a published edition again, by its own method, decisions and day.
 
-
-def _previous(store: Store, edition: Edition) -> Edition | None:
-    previous = edition.manifest.previous
-    return None if previous is None else read_edition(store, previous)
-
-
-def made_again(store: Store, edition: Edition) -> Edition:
-    """A published edition again, by its own method, decisions and day.
-
-    Measured lines are computed from those of its tows that the warehouse still has; lines carried
-    over are re-based again from the printed edition; a printed register is read again. Which lines
-    have a newer tow without samples is taken as the edition has it.
+    Measured lines are computed from those of its tows that the warehouse still has, carried lines
+    re-based again from the printed edition, and a printed register read again. What other tows
+    said of a tow, and which tows had no samples, is taken as the edition has it.
 
     Raises:
         MissingKnowledgeError: there is no warehouse, or the archive is not there.
@@ -158,58 +120,128 @@ def made_again(store: Store, edition: Edition) -> Edition:
     """
     if store.made_from("tows") is None:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
+    manifest = edition.manifest
     if edition.method is None:
-        path = edition_path(store, edition.manifest.edition)
-        files = sheets.read_inputs(path)
-        if files.is_empty():
-            raise BrokenPromiseError("{}/{} names no file", path.name, INPUTS)
-        return with_changes(store, as_printed(store, edition.manifest, files["path"][0]))
-    tows = edition.tables["tows"]
-    known = [name for name in JUDGED if name in tows.columns]
-    again = recomputed(
+        path = edition_path(store, manifest.edition)
+        registers = list(list_sources(path, manifest))
+        if len(registers) != 1:
+            raise BrokenPromiseError("{} does not say which printed register it is", path.name)
+        return with_changes(store, make_printed(store, manifest, registers[0]))
+    own = edition.tables["tows"]
+    judged = own.select("tow_id", *(name for name in JUDGED if name in own.columns))
+    tows, runs = (t.join(judged, on="tow_id", how="semi") for t in tables_of_today(store).values())
+    tows = tows.drop(JUDGED, strict=False).join(judged, on="tow_id", maintain_order="left")
+    is_flagged = pl.col("flags").list.contains(NEWER_TOW_UNMEASURED)
+    again = _recompute(
         store,
-        edition.manifest,
+        manifest,
         edition.method,
+        {"tows": tows, "tow_runs": runs},
         decisions_of(store, edition),
-        edition.register.filter(status="never_towed"),
-        edition.register.filter(pl.col("flags").list.contains(NEWER_TOW_UNMEASURED)).select(
-            *LINE, tow_date=edition.manifest.valid_from
-        ),
-        tows.select("tow_id", *known),
+        crews=edition.register.filter(status="never_towed"),
+        unmeasured=edition.register.filter(is_flagged).select(*LINE, tow_date=manifest.valid_from),
     )
     return with_changes(store, again)
 
 
-def _with_facts(draft: pl.DataFrame, tows: pl.DataFrame, counting: Collection[str]) -> pl.DataFrame:
-    """Lines with the facts of their tows; numbers only where they count."""
-    facts = tows.select("tow_id", *SIZES, INPUTS_HASH)
-    counts = pl.col("status").is_in(list(counting))
-    return draft.join(facts, on="tow_id", how="left", maintain_order="left").with_columns(
-        *(pl.when(counts).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
-        pl.when(counts).then(pl.lit(MEASURED)).alias("basis"),
+def with_changes(store: Store, edition: Edition) -> Edition:
+    """Add the comparison with the edition before, where there is one."""
+    previous = _previous(store, edition)
+    if previous is None:
+        return edition
+    return replace(
+        edition, tables={**edition.tables, folder.CHANGES: compare(store, previous, edition)}
     )
 
 
-def _completed(
+def _previous(store: Store, edition: Edition) -> Edition | None:
+    previous = edition.manifest.previous
+    return None if previous is None else read_edition(store, previous)
+
+
+def _recompute(
+    store: Store,
+    manifest: Manifest,
+    method: Method,
+    inputs: dict[str, pl.DataFrame],
+    decisions: pl.DataFrame,
+    crews: pl.DataFrame,
+    unmeasured: pl.DataFrame,
+    counting: Collection[str] = ("valid",),
+) -> Edition:
+    """Compute all tables of an edition from tows and runs; `inputs` holds both tables."""
+    tows, runs = inputs["tows"], inputs["tow_runs"]
+    blocks = stack_blocks(intake.all_blocks(store), runs)
+    made = recompute(method, tows, blocks, with_bands=False)
+    carried = _carried_lines(store, manifest, method, made.log_factors, tows)
+    draft = draft_register(
+        made.curves, tows, crews, manifest.valid_from, method.validity, decisions, carried
+    )
+    counts = pl.col("status").is_in(list(counting))
+    own_hash = carried.select(*TOW_DAY, printed_sha256=INPUTS_HASH)
+    lines = (
+        draft.join(
+            tows.select("tow_id", *SIZES, INPUTS_HASH),
+            on="tow_id",
+            how="left",
+            maintain_order="left",
+        )
+        .join(own_hash, on=TOW_DAY, how="left", maintain_order="left")
+        .with_columns(
+            pl.coalesce(INPUTS_HASH, "printed_sha256").alias(INPUTS_HASH),
+            *(
+                pl.when(counts).then(pl.col(name)).alias(name)
+                for name in (*NUMBERS, "flags", "basis")
+            ),
+        )
+    )
+    lines = flag_unmeasured(lines, unmeasured, decisions)
+    members = conform("ensemble", members_of(method, made))
+    tables = {
+        **inputs,
+        **{name: conform(name, getattr(made, name)) for name in MADE},
+        "ensemble": members.join(lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"),
+        "register": _complete(store, lines, manifest, method),
+    }
+    return Edition(manifest, tables, method)
+
+
+def _carried_lines(
+    store: Store, manifest: Manifest, method: Method, log_factors: pl.DataFrame, tows: pl.DataFrame
+) -> pl.DataFrame:
+    """Return the lines of the printed edition that is carried over; none where none is.
+
+    Raises:
+        MissingKnowledgeError: the edition is not a printed one.
+    """
+    if manifest.carried_from is None:
+        return pl.DataFrame(schema={**LINE_SCHEMA})
+    printed = read_edition(store, manifest.carried_from)
+    if printed.manifest.kind != "as_printed":
+        raise MissingKnowledgeError(
+            "edition {} was recomputed; only lines of an edition as printed can be carried over",
+            printed.manifest.edition,
+        )
+    return carried_lines(printed.register, log_factors, method, tows)
+
+
+def _complete(
     store: Store, lines: pl.DataFrame, manifest: Manifest, method: Method | None
 ) -> pl.DataFrame:
-    """Lines with the facts of their boats and their verification codes, checked and sorted."""
-    own = PRINTED_METHOD if method is None else method.name
+    """Add the facts of boats and the verification codes; check and sort."""
+    own = prints.PRINTED_METHOD if method is None else method.name
     boats = store.read("boats").select("fsn_no", *BOAT_FACTS)
+    is_printed = pl.col("basis") == NOT_REBASED
     named = lines.join(boats, on="fsn_no", how="left", maintain_order="left").with_columns(
-        pl.lit(manifest.edition).alias("edition"),
-        pl.when(basis=NOT_REBASED)
-        .then(pl.lit(PRINTED_METHOD))
-        .otherwise(pl.lit(own))
-        .alias("method"),
-        pl.lit(manifest.valid_from).alias("as_of"),
+        edition=pl.lit(manifest.edition),
+        method=pl.when(is_printed).then(pl.lit(prints.PRINTED_METHOD)).otherwise(pl.lit(own)),
+        as_of=pl.lit(manifest.valid_from),
     )
     missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
-    full = (
-        named.with_columns(missing)
-        .select(pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items())
-        .sort(LINE)
+    full = named.with_columns(missing).select(
+        pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items()
     )
+    full = full.sort(LINE)
     codes = sheets.verification_codes(full, None if method is None else method.content_hash)
     coded = full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
     conform("register", coded)
@@ -219,44 +251,36 @@ def _completed(
 # Files
 
 
-def sheets_and_texts(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
-    """What people read of an edition, by file name: all of it follows from its tables.
-
-    Args:
-        store: the data folder.
-        edition: the edition, with its comparison with the one before.
-        files: what it was made from, as `input_files` gives it.
-    """
-    manifest = edition.manifest
-    written = notes.texts(edition, _previous(store, edition))
-    if edition.method is not None:
-        decisions = decisions_up_to(store, manifest.published_on)
-        written |= {
-            METHOD: method_text(edition.method),
-            DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
-        }
-    return {
-        CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
-        XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, manifest),
-        INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
-        **{name: text.encode("utf-8") for name, text in written.items()},
+def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
+    """Write the sheets, method and decisions of an edition, by file name."""
+    contents = {
+        folder.CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
+        folder.XLSX: sheets.write_workbook(edition.register, sheets.SHEET_FIELDS),
     }
+    if edition.method is not None:
+        decisions = decisions_up_to(store, edition.manifest.published_on)
+        decided_then = json.dumps([d.model_dump(mode="json") for d in decisions], indent=1)
+        contents[folder.METHOD] = method_text(edition.method).encode("utf-8")
+        contents[folder.DECISIONS] = decided_then.encode("utf-8")
+    return contents
 
 
-def contents_of(store: Store, edition: Edition, files: pl.DataFrame) -> dict[str, bytes]:
-    """All files of an edition, last its manifest; takes arguments as `sheets_and_texts`."""
-    contents = sheets_and_texts(store, edition, files)
+def edition_files(store: Store, edition: Edition) -> dict[str, bytes]:
+    """Write all files of an edition, last its manifest."""
+    contents = sheet_files(store, edition)
+    for name, text in notes.texts(edition, _previous(store, edition)).items():
+        contents[name] = text.encode("utf-8")
     for name, frame in edition.tables.items():
         target = io.BytesIO()
         frame.write_parquet(target, compression="zstd")
-        contents[name + PARQUET] = target.getvalue()
+        contents[name + folder.PARQUET] = target.getvalue()
     hashes = {name: hashlib.sha256(c).hexdigest() for name, c in sorted(contents.items())}
     sealed = edition.manifest.model_copy(update={"files": hashes}).sealed()
-    contents[MANIFEST] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
+    contents[folder.MANIFEST] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
     return contents
 
 
 def decisions_up_to(store: Store, day: dt.date) -> tuple[decided.Decision, ...]:
-    """Decisions about tows taken up to a day."""
+    """Return the decisions about tows taken up to a day."""
     decisions = decided.read_decisions(store.root / decided.FILE_NAME)
     return tuple(d for d in decisions if d.datum <= day)

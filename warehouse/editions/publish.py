@@ -1,12 +1,11 @@
-"""Publishing: from the samples and lists of an archive to a frozen edition.
+"""Publishing: a register is frozen as an edition, by a person.
 
-What an edition holds is made in `warehouse.editions.making`, how a folder appears whole or not at
-all in `warehouse.store.editions`. Only a person publishes, who gives the name, the day from which
-it counts, the decision and the day of publication.
+Only a person publishes, who gives the name, the day from which it counts, the decision and the day
+of publication. What an edition holds is made in `warehouse.editions.making`.
 """
 
 import datetime as dt
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -19,25 +18,18 @@ from pipeline.register.register import (
     LINE,
     draft_name,
     reference_day,
-    unmeasured_tows,
 )
 from pipeline.tables.row import Row
-from warehouse.editions.inputs import REGISTER, input_files, listed_inputs
-from warehouse.editions.making import (
-    as_printed,
-    contents_of,
-    decisions_up_to,
-    recomputed,
-    with_changes,
+from warehouse.editions import printed as prints
+from warehouse.editions.inputs import (
+    list_files,
 )
-from warehouse.editions.notes import VERSION
-from warehouse.editions.printed import printed_path
-from warehouse.editions.verify import chain_head
-from warehouse.store import decisions as decided
+from warehouse.editions.making import edition_files, make_edition, make_printed, with_changes
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
     Edition,
     Manifest,
+    chain_head,
     check_new_name,
     edition_names,
     read_edition,
@@ -65,14 +57,14 @@ class Terms:
 
 
 def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Path:
-    """Freezes the register of a method as an edition.
+    """Freeze the register of a method as an edition.
 
     Args:
         store: the data folder; its tables must be those of the archive and code of today.
         method: a method that the last rebuild applied.
         terms: what a person decided.
-        carry: a printed edition of which lines are taken over, re-based in closed form, for boats
-            and crews whose newest tow has no samples. Without it such lines are flagged.
+        carry: a printed edition of which lines are taken over, re-based in closed form, where the
+            newest tow of a boat and crew has no samples in the archive.
 
     Returns:
         The folder.
@@ -90,41 +82,32 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
             store.root,
             method.name,
         )
-    edition = as_decided(store, method, terms, carry)
-    return _write(store, edition, input_files(edition.tables["tows"], listed_inputs(store)))
+    manifest = _manifest(store, terms, list_files(store), method, carry)
+    return _write(store, make_edition(store, manifest, method))
 
 
 def _is_of_today(store: Store, method: Method) -> bool:
-    """Whether the tables are made with this method and with the code of today."""
+    """Return whether the tables are made with this method and with the code of today."""
     if store.made_from("tows") is None:
         return False
     with_code = (method.name, method.content_hash, code_version())
     return with_code in store.read("lineage").select("method", "method_hash", "code_version").rows()
 
 
-def as_decided(
-    store: Store,
-    method: Method,
-    terms: Terms,
-    carry: str | None = None,
-    counting: Collection[str] = ("valid",),
-) -> Edition:
-    """The edition that publishing would freeze; raises and takes arguments as `publish`.
+def publish_printed(store: Store, season: int, terms: Terms) -> Path:
+    """Freeze a register of the archive, as printed that year, as an edition.
 
-    Args:
-        counting: statuses of lines that have numbers.
+    Raises:
+        BrokenPromiseError: the name is taken, or the folder could not be written.
+        MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
+            of it cannot be read.
     """
-    decisions = decided.decision_table(decisions_up_to(store, terms.published_on))
-    _check_decided_tows(decisions, store.read("tows"))
-    manifest = _manifest(store, terms, method, carry)
-    crews = store.read("listed_boats")
-    unmeasured = unmeasured_tows(
-        store.read("listed_tows"),
-        store.read("printed_registers"),
-        store.read("tows"),
-        terms.valid_from,
-    )
-    return recomputed(store, manifest, method, decisions, crews, unmeasured, counting=counting)
+    _check_terms(store, terms)
+    path = prints.printed_path(store, season)
+    listed = store.read("listed_files").filter(pl.col("path") == path)
+    sources = dict(listed.select("path", "sha256").rows())
+    manifest = _manifest(store, terms, sources, printed_in=season)
+    return _write(store, make_printed(store, manifest, path))
 
 
 def drafted(
@@ -133,7 +116,7 @@ def drafted(
     valid_from: dt.date | None = None,
     counting: Collection[str] = ("valid",),
 ) -> Edition:
-    """The draft of a method as an edition: what publishing it would freeze.
+    """Return the draft of a method as an edition: what publishing it would freeze.
 
     Args:
         store: the data folder.
@@ -144,26 +127,12 @@ def drafted(
     """
     day = valid_from or reference_day(store.read("tows"), store.read("listed_races"))
     terms = Terms(draft_name(method.name), day, "", dt.date.today())
-    return as_decided(store, method, terms, counting=counting)
-
-
-def publish_printed(store: Store, season: int, terms: Terms) -> Path:
-    """Freezes a register of the archive, as printed that year, as an edition.
-
-    Raises:
-        BrokenPromiseError: the name is taken, or the folder could not be written.
-        MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
-            of it cannot be read.
-    """
-    _check_terms(store, terms)
-    path = printed_path(store, season)
-    files = store.read("listed_files").filter(pl.col("path") == path)
-    files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
-    return _write(store, as_printed(store, _manifest(store, terms, None, None), path), files)
+    manifest = _manifest(store, terms, list_files(store), method)
+    return make_edition(store, manifest, method, counting)
 
 
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
-    """The edition that counted last before a day; None if there is none."""
+    """Return the edition that counted last before a day; None if there is none."""
     known = [read_manifest(store.editions / name) for name in edition_names(store)]
     earlier = [m for m in known if (m.valid_from, m.published_on) <= (valid_from, published_on)]
     if not earlier:
@@ -189,14 +158,14 @@ class Published:
 
 
 def published(store: Store, folder: Path) -> Published:
-    """What there is to say about an edition that was just published."""
+    """Return what there is to say about an edition that was just published."""
     edition = read_edition(store, folder.name)
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
     return Published(edition.manifest, str(folder), dict(counts.rows()), lines_to_look_at(edition))
 
 
 def lines_to_look_at(edition: Edition) -> list[Row]:
-    """Lines with flags, and those left without numbers because their tows are doubted."""
+    """Return lines with flags, and those left without numbers because their tows are doubted."""
     to_look_at = (pl.col("flags").list.len() > 0) | (pl.col("status") == DOUBTED)
     lines = edition.register.filter(to_look_at)
     return lines.select(*LINE, "status", "tow_id", "flags").to_dicts()
@@ -210,18 +179,14 @@ def _check_terms(store: Store, terms: Terms) -> None:
         )
 
 
-def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
-    unknown = decisions.join(tows, on="tow_id", how="anti")["tow_id"].to_list()
-    if unknown:
-        raise MissingKnowledgeError(
-            "{} decides about {}, which is not a tow of the warehouse; mend the "
-            "sleep_id, or take the decision out",
-            decided.FILE_NAME,
-            ", ".join(unknown),
-        )
-
-
-def _manifest(store: Store, terms: Terms, method: Method | None, carry: str | None) -> Manifest:
+def _manifest(
+    store: Store,
+    terms: Terms,
+    sources: Mapping[str, str],
+    method: Method | None = None,
+    carry: str | None = None,
+    printed_in: int | None = None,
+) -> Manifest:
     return Manifest(
         edition=terms.edition,
         kind="as_printed" if method is None else "recomputed",
@@ -234,12 +199,13 @@ def _manifest(store: Store, terms: Terms, method: Method | None, carry: str | No
         simulated=bool(store.read("about_archive")["simulated"][0]),
         carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
-        texts_version=VERSION,
+        printed_in=printed_in,
+        sources=dict(sources),
     )
 
 
-def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
-    """Writes an edition's folder as the next of the chain."""
+def _write(store: Store, edition: Edition) -> Path:
+    """Write an edition's folder as the next of the chain."""
     compared = with_changes(store, edition)
 
     def contents() -> dict[str, bytes]:
@@ -247,6 +213,6 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame) -> Path:
         number, seal = (0, None) if head is None else (head.number or 0, head.seal)
         place = {"number": number + 1, "after_seal": seal}
         manifest = edition.manifest.model_copy(update=place)
-        return contents_of(store, replace(compared, manifest=manifest), files)
+        return edition_files(store, replace(compared, manifest=manifest))
 
     return write_folder(store, edition.manifest.edition, contents)

@@ -1,4 +1,4 @@
-"""The register as people read it: CSV and XLSX with Dutch headers.
+"""The register as people read it: CSV and XLSX with Dutch headers, for a spreadsheet.
 
 The cells of the CSV are the printed register: they are what the verification code of a line covers,
 together with the line's inputs and method. Nothing is computed here but text and hashes.
@@ -12,19 +12,14 @@ import io
 import json
 import re
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
 import polars as pl
-import python_calamine
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from pipeline.register.register import NO_EMPTY_THWART
-from warehouse.store.editions import INPUTS, Manifest
+from warehouse.archive.workbooks import read_workbook
 
-REGISTER_SHEET: Final = "register"
-A4: Final = 9
-"""The paper's number in a spreadsheet."""
 CODE_LENGTH: Final = 10
 FORMULA: Final = re.compile(r"(^|[;,\t\r\n])(\s*)([=+\-@])")
 """What a spreadsheet takes for a formula, also behind a separator that it splits a cell at."""
@@ -32,6 +27,9 @@ FORMULA: Final = re.compile(r"(^|[;,\t\r\n])(\s*)([=+\-@])")
 TEXT_STAYS_TEXT: Final = dict.fromkeys(
     ("strings_to_formulas", "strings_to_urls", "strings_to_numbers"), False
 )
+SHEET: Final = "register"
+OLDER_SECOND_SHEET: Final = "editie"
+"""What workbooks up to version 1.0.0 have besides."""
 
 FieldType = Literal["string", "number", "integer", "date"]
 
@@ -98,8 +96,6 @@ CODE_FIELD: Final = Field("controlecode", "verification_code")
 SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 """The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
 
-INPUT_FIELDS: Final = (Field("bestand", "path"), Field("soort", "kind"), Field("sha256", "sha256"))
-
 
 def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     """The cells of a sheet as they are printed, by header."""
@@ -136,94 +132,75 @@ def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
     return text.getvalue().encode("utf-8-sig")
 
 
-def read_inputs(edition: Path) -> pl.DataFrame:
-    """What an edition was made from: `path`, `kind` and `sha256` of each file.
-
-    A row of another width was changed, which is found where the files themselves are looked at.
-    """
-    path, names = edition / INPUTS, [field.column for field in INPUT_FIELDS]
-    content = path.read_bytes() if path.exists() else b""
-    text = content.decode("utf-8-sig", errors="replace")
-    rows = [
-        row
-        for row in csv.reader(io.StringIO(text, newline=""), delimiter=";")
-        if len(row) == len(names)
-    ]
-    return pl.DataFrame(rows[1:], schema=dict.fromkeys(names, pl.String()), orient="row")
-
-
-def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], manifest: Manifest) -> bytes:
-    """A sheet as XLSX, numbers as numbers and days as days, with what the edition is beside it."""
+def write_workbook(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
+    """Write a sheet as XLSX: numbers as numbers, days as days, and no text as a formula."""
     target = io.BytesIO()
-    words = _in_words(frame)
-    cells = words.select(
-        (pl.col(f.column).round(f.decimals) if f.type == "number" else pl.col(f.column)).alias(
-            f.header
-        )
-        for f in fields
-    )
+    formats: dict[Any, str] = {field.header: _number_format(field) for field in fields}
     with xlsxwriter.Workbook(target, {"in_memory": True, **TEXT_STAYS_TEXT}) as book:
-        created = dt.datetime.combine(manifest.published_on, dt.time())
-        book.set_properties({"title": f"Sloepenregister {manifest.edition}", "created": created})
-        sheet = cells.write_excel(
-            book,
-            REGISTER_SHEET,
-            column_formats={field.header: _number_format(field) for field in fields},
-            column_widths=_widths(frame, fields),
-            header_format={"text_wrap": True, "valign": "top"},
-            row_heights={0: 40},
-            freeze_panes=(1, 1),
-        ).get_worksheet_by_name(REGISTER_SHEET)
-        sheet.repeat_rows(0)
-        sheet.set_landscape()
-        sheet.set_paper(A4)
-        sheet.repeat_columns(0, 2)
-        sheet.fit_to_pages(2, 0)
-        about = pl.DataFrame(list(_about(manifest).items()), ["editie", "waarde"], orient="row")
-        about.write_excel(book, "editie", include_header=False, autofit=True)
+        _cells(frame, fields).write_excel(
+            book, SHEET, column_formats=formats, autofit=True, freeze_panes=(1, 1)
+        )
     return target.getvalue()
 
 
-def _widths(frame: pl.DataFrame, fields: Sequence[Field]) -> dict[Any, int]:
-    """Width of each column in pixels, by header: of its cells, and of the words of its header."""
-    cells = printed(frame, fields)
-    return {
-        name: 12 + 7 * max(7, *map(len, name.split()), *map(len, cells[name]))
-        for name in cells.columns
-    }
+def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]) -> bool:
+    """Return whether a workbook shows a sheet as `write_workbook` writes it, and nothing else.
+
+    Compared are the cells with their number formats; hidden rows, columns and sheets show nothing.
+    """
+    import openpyxl  # type: ignore[import-untyped]  # noqa: PLC0415 - a tenth of a second
+
+    try:
+        read_workbook(workbook)  # refuses what would unpack to more than a list needs
+        book = openpyxl.load_workbook(io.BytesIO(workbook))
+    except Exception:
+        return False
+    if book.sheetnames not in ([SHEET], [SHEET, OLDER_SECOND_SHEET]):
+        return False
+    sheet = book[SHEET]
+    shapes = [*sheet.row_dimensions.values(), *sheet.column_dimensions.values()]
+    sizes = [getattr(shape, "height", None) for shape in shapes]
+    sizes += [getattr(shape, "width", None) for shape in shapes]
+    is_hidden = any(shape.hidden for shape in shapes) or 0 in sizes
+    if is_hidden or sheet.sheet_state != "visible" or sheet.conditional_formatting:
+        return False
+    cells = _cells(frame, fields)
+    formats = [_number_format(field) for field in fields]
+    shown = [tuple(cell.value for cell in row) for row in sheet.iter_rows()]
+    expected = [tuple(cells.columns), *(tuple(map(_as_read, row)) for row in cells.rows())]
+    formatted = [
+        [cell.number_format for cell in row if cell.value is not None]
+        for row in sheet.iter_rows(min_row=2)
+    ]
+    formats_of_cells = [
+        [name for name, value in zip(formats, row, strict=True) if value not in (None, "")]
+        for row in cells.rows()
+    ]
+    return shown == expected and formatted == formats_of_cells
+
+
+def _cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
+    """Return the values of the cells of a workbook, by header."""
+    words = _in_words(frame)
+    cells = []
+    for field in fields:
+        value = pl.col(field.column)
+        rounded = value.round(field.decimals) if field.type == "number" else value
+        cells.append(rounded.alias(field.header))
+    return words.select(cells)
+
+
+def _as_read(value: object) -> object:
+    """Return a value as a workbook gives it back: a day with a time, no empty text."""
+    if isinstance(value, dt.date):
+        return dt.datetime.combine(value, dt.time())
+    return None if value == "" else value
 
 
 def _number_format(field: Field) -> str:
     if field.type == "number":
         return "0." + "0" * field.decimals if field.decimals else "0"
     return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
-
-
-def _about(manifest: Manifest) -> dict[str, str]:
-    """What an edition is, in words."""
-    return {
-        "editie": manifest.edition,
-        "geldt vanaf": manifest.valid_from.isoformat(),
-        "vastgesteld op": manifest.published_on.isoformat(),
-        "besluit": manifest.decision,
-        "methode": manifest.method or "zoals gedrukt",
-        "methode-hash": manifest.method_hash or "",
-        "programmaversie": manifest.code_version,
-        "gesimuleerd": "ja: geen metingen van de federatie" if manifest.simulated else "nee",
-    }
-
-
-def read_xlsx_cells(content: bytes) -> dict[str, list[list[Any]]]:
-    """The cells of all sheets, by the sheet's name.
-
-    Raises:
-        ValueError: this is no XLSX.
-    """
-    try:
-        book = python_calamine.load_workbook(io.BytesIO(content))
-        return {name: book.get_sheet_by_name(name).to_python() for name in book.sheet_names}
-    except python_calamine.CalamineError as error:
-        raise ValueError(f"no XLSX: {error}") from error
 
 
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:

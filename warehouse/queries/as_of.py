@@ -12,7 +12,7 @@ import duckdb
 import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name
+from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name, lines_on_days
 from pipeline.tables.keys import SIZES
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.registers import due_of_lines, published_tables
@@ -76,17 +76,9 @@ def register_on(
     published line, and stands only where that line is the one that counted.
     """
     key = ["edition", *LINE]
-    begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= day)
-    over = pl.col("valid_until") < day
     codes = register.select(*key, "tow_id", "verification_code")
     counted = (
-        history.filter(begun)
-        .sort(*key, "position")
-        .group_by(key, maintain_order=True)
-        .last()
-        .with_columns(
-            pl.when(over).then(pl.lit("expired")).otherwise(pl.lit("valid")).alias("status")
-        )
+        lines_on_days(history.sort(*key, "position"), [day], key)
         .join(tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left")
         .join(codes, on=[*key, "tow_id"], how="left", nulls_equal=True, maintain_order="left")
     )
@@ -96,5 +88,5 @@ def register_on(
         *(pl.lit(None, register.schema[name]).alias(name) for name in (*CURVE_COLUMNS, *SIZES)),
         pl.lit(None, pl.String).alias("verification_code"),
     )
-    both = pl.concat([counted, rest], how="diagonal_relaxed")
+    both = pl.concat([counted.drop("as_of"), rest.drop("as_of")], how="diagonal_relaxed")
     return both.with_columns(pl.lit(day).alias("as_of")).select(register.columns).sort(key)

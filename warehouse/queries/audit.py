@@ -12,8 +12,8 @@ from typing import Final, TypeAlias
 
 import duckdb
 
-from pipeline.consistency.lines import ALL_CREWS
 from pipeline.consistency.observed import UNKNOWN_TYPE
+from pipeline.consistency.types import QUANTITIES, TERM_NAMES
 from pipeline.errors import MissingKnowledgeError
 from pipeline.quantiles import differ_beyond_intervals
 from pipeline.tables.row import Row
@@ -29,9 +29,6 @@ from warehouse.store.store import Store
 
 TYPE_METHODS: Final = ("as-published", "rebased-2015", "rebased")
 """Methods on a type's page when none is asked for: before, by the rules of 2015, and now."""
-
-WEIGHT_LINE: Final = {"quantity": "cw_standard_kg_m", "explaining": "weight_kg", "within": "all"}
-"""The line about which the level of a type is judged."""
 
 TYPE: Final = f"coalesce(b.boat_type, '{UNKNOWN_TYPE}')"
 """A boat's type in a query that calls the table of boats b."""
@@ -50,12 +47,11 @@ class BoatAudit:
         boat: its row of `boats`.
         tows: rows of `tows` with `curves` (rows of that table with `interval`, `run_points` and
             `budget`) and `steps`, rows of `correction_steps`.
-        in_type: rows of `type_outliers`.
+        in_type: rows of `compared_tows`.
         predicted: rows of `predicted_cw`.
         options: rows of `option_effects`.
         set_aside: rows of `quarantine`.
-        pooled: rows of `pooled_curves`.
-        slow_tows, repeat_pairs, register: rows of those tables.
+        repeat_pairs, register: rows of those tables.
     """
 
     simulated: bool
@@ -63,8 +59,6 @@ class BoatAudit:
     boat: Row
     tows: list[Row]
     in_type: list[Row]
-    pooled: list[Row]
-    slow_tows: list[Row]
     repeat_pairs: list[Row]
     predicted: list[Row]
     options: list[Row]
@@ -199,9 +193,7 @@ def _boat_audit(db: duckdb.DuckDBPyConnection, boat: Row, methods: list[str]) ->
         methods=methods,
         boat=boat,
         tows=rows(db, _TOWS, fsn_no, methods),
-        in_type=of_boat("type_outliers"),
-        pooled=of_boat("pooled_curves"),
-        slow_tows=of_boat("slow_tows"),
+        in_type=of_boat("compared_tows"),
         repeat_pairs=of_boat("repeat_pairs"),
         predicted=of_boat("predicted_cw"),
         options=rows(db, _OPTIONS, fsn_no, methods),
@@ -281,45 +273,36 @@ def _types_audit(db: duckdb.DuckDBPyConnection, types: list[str], methods: list[
 
 
 def differences(first: Statistics, *others: Statistics) -> list[str]:
-    """What differs between two types: a slope or shift by more than both intervals, or a verdict.
-
-    One that follows weight and one in which no trend is seen do not differ by that alone.
+    """Return what differs between two types: a slope or shift by more than both intervals.
 
     Returns:
-        `quantity explaining` of lines, with the class that a line is of; `speed_trend`, the names
-        of eras, `bends`; of one type, nothing.
+        `quantity term` of slopes, `quantity verdict` where boats of one type are equal and those of
+        the other are not, and the names of eras; of one type, nothing.
     """
     found = []
     for second in others:
         own, other = _intervals(first), _intervals(second)
         both = own.keys() & other.keys()
         found += [n for n in own if n in both and differ_beyond_intervals(own[n], other[n])]
-        if {row["equal_possible"] for row in first["bends"] + second["bends"]} == {True, False}:
-            found.append("bends")
+        verdicts = {row["quantity"]: row["verdict"] for row in second["consistency"]}
+        for row in first["consistency"]:
+            if {row["verdict"], verdicts.get(row["quantity"])} == {"equal", "differ"}:
+                found.append(f"{row['quantity']} verdict")
     return found
 
 
 def _intervals(under: Statistics) -> dict[str, tuple[float, float, float]]:
-    """Every slope and shift with its interval; shifts as logarithms."""
-    slopes = [
-        *((_name_line(line), line) for line in under["lines"]),
-        *(("speed_trend", line) for line in under["speed_trend"]),
-    ]
-    return {
-        name: (line["slope"], line["slope_lo"], line["slope_hi"])
-        for name, line in slopes
-        if not line["reason"]
-    } | {
-        era["era"]: (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
-        for era in under["eras"]
-        if not era["reason"]
-    }
-
-
-def _name_line(line: Row) -> str:
-    """Name a line by its quantity, what explains it and, where it is of one, its class."""
-    name = f"{line['quantity']} {line['explaining']}"
-    return name if line["within"] == ALL_CREWS else f"{name} {line['within']}"
+    """Return every slope and shift with its interval; shifts as logarithms."""
+    found = {}
+    for row in under["consistency"]:
+        for term, name in TERM_NAMES.items():
+            slope = (row[f"{name}_slope"], row[f"{name}_slope_lo"], row[f"{name}_slope_hi"])
+            if slope[0] is not None:
+                found[f"{row['quantity']} {term}"] = slope
+    for era in under["eras"]:
+        if not era["reason"]:
+            found[era["era"]] = (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
+    return found
 
 
 _FACTS = f"""
@@ -331,42 +314,11 @@ SELECT {TYPE} AS boat_type, count(DISTINCT b.fsn_no) AS n_boats,
 FROM boats AS b LEFT JOIN tows AS t USING (fsn_no) WHERE {TYPE} = ? GROUP BY ALL
 """  # noqa: S608
 
-_FOLLOWS = "CASE WHEN slope IS NOT NULL THEN slope_lo > 0 OR slope_hi < 0 END AS follows"
-"""Whether the interval of a slope leaves out zero."""
-
-_LINES = f"""
-SELECT *, {_FOLLOWS} FROM type_lines
-WHERE method = ? AND boat_type = ? AND tows = 'newest'
-ORDER BY quantity, explaining, within
-"""  # noqa: S608
-
-_TREND = f"SELECT *, {_FOLLOWS} FROM speed_trend WHERE method = ? AND boat_type = ?"  # noqa: S608
-
-_SHARED = """
-SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
-       count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
-       stddev_samp(p.b_m_s) / avg(p.b_m_s) AS b_sd_ratio,
-       max(abs(ln(p.cw_085_kg_m / o.cw_085_kg_m))) AS most_085,
-       max(abs(ln(p.cw_kg_m / o.cw_kg_m))) AS most_100,
-       max(abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_115,
-       arg_max(p.fsn_no, abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_fsn_no
-FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
-WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
-"""
-
 _REPEATS = f"""
 SELECT count(*) AS n_pairs, sqrt(avg(p.ln_ratio * p.ln_ratio) / 2) AS sd_ratio,
        count(p.e_n) AS n_e_n, count(*) FILTER (WHERE abs(p.e_n) > 1) AS n_disagree
 FROM repeat_pairs AS p JOIN boats AS b USING (fsn_no) WHERE p.method = ? AND {TYPE} = ?
 """  # noqa: S608
-
-_PREDICTION = """
-SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
-       sqrt(avg(ln_ratio * ln_ratio)) AS rmse_ratio, avg(ln_ratio) AS mean_ratio,
-       sqrt(avg(cw_sd_ratio * cw_sd_ratio)) AS tow_sd_ratio,
-       count(*) FILTER (WHERE disagrees) AS n_disagree
-FROM predicted_cw WHERE method = ? AND boat_type = ?
-"""
 
 _NAMED = """
 SELECT t.*, b.name FROM {} AS t LEFT JOIN boats AS b USING (fsn_no)
@@ -374,18 +326,22 @@ WHERE t.method = ? AND t.boat_type = ? AND t.{} ORDER BY {}, tow_id
 """
 """Rows of tows for which a column says yes, with the boat's name."""
 
+_QUANTITIES = ", ".join(f"'{quantity.name}'" for quantity in QUANTITIES)
+
+_CONSISTENCY = f"""
+SELECT c.*, b.name AS farthest_name
+FROM type_consistency AS c LEFT JOIN boats AS b ON b.fsn_no = c.farthest
+WHERE c.method = ? AND c.boat_type = ? ORDER BY list_position([{_QUANTITIES}], quantity)
+"""  # noqa: S608
+
 _STATISTICS: Final = {
-    "lines": _LINES,
-    "hull_speed": "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ?",
-    "newest": _NAMED.format("compared_tows", "newest", "fsn_no"),
-    "bends": "SELECT * FROM type_homogeneity WHERE method = ? AND boat_type = ?",
-    "speed_trend": _TREND,
-    "shared": _SHARED,
-    "outside": _NAMED.format("type_outliers", "outside", "abs(deviation_sd) DESC"),
-    "slow_tows": _NAMED.format("slow_tows", "slow", "power_w"),
+    "consistency": _CONSISTENCY,
+    "outside": _NAMED.format(
+        "compared_tows", "newest AND (t.cw_outside OR t.b_outside)", "abs(cw_deviation_sd) DESC"
+    ),
+    "slow_tows": _NAMED.format("compared_tows", "slow", "power_w"),
     "repeats": _REPEATS,
     "eras": "SELECT * FROM era_shifts WHERE method = ? AND boat_type = ?",
-    "prediction": _PREDICTION,
 }
 """What is asked of a type under a method."""
 

@@ -15,13 +15,12 @@ import polars as pl
 
 from pipeline.recompute.facts import with_boat_types, with_hand_windows
 from pipeline.register.changes import NO_PARTS, compare_lines
-from pipeline.register.register import LINE, default_method, draft_name
+from pipeline.register.register import LINE, MEASURED, default_method, draft_name
 from pipeline.tables.row import Row
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.editions.compare import grounds
 from warehouse.editions.inputs import INPUTS_HASH, same_tows
 from warehouse.store.code import code_version
-from warehouse.store.editions import MEASURED
 from warehouse.store.files import folder_written_beside
 from warehouse.store.store import DamagedFileError, Store, read_parquet, write_parquet
 

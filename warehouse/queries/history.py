@@ -5,6 +5,7 @@ is `pipeline.recompute.recompute`'s.
 """
 
 import datetime as dt
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Self
@@ -12,9 +13,9 @@ from typing import Self
 import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.consistency.homogeneity import type_homogeneity
-from pipeline.consistency.observed import Observed, observe_trusted, of_trusted
+from pipeline.consistency.observed import observe_trusted, of_trusted
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
+from pipeline.consistency.types import DIFFERENCES_THAT_MATTER, compare_types
 from pipeline.method.definition import Method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
@@ -34,6 +35,7 @@ class History:
         crews: listed boats with their crews, also those never towed.
         blocks: the runs of `tows`.
         last_day: the day of the last tow or race, on which drafts judge what is valid.
+        differences: spread between boats of a type that matters, as a ratio by quantity.
         cache: what was found of the runs so far.
     """
 
@@ -42,6 +44,7 @@ class History:
     crews: pl.DataFrame
     blocks: RunBlocks
     last_day: dt.date
+    differences: Mapping[str, float] = field(default_factory=lambda: DIFFERENCES_THAT_MATTER)
     cache: RunCache = field(default_factory=RunCache)
 
     @classmethod
@@ -54,10 +57,12 @@ class History:
         if store.made_from("tows") is None:
             raise no_warehouse(store)
         tows = typed_tows(store)
+        known = store.read("type_consistency").select("quantity", "difference_that_matters")
         return cls(
             tows=tows,
             last_day=reference_day(tows, store.read("listed_races")),
             boats=store.read("boats"),
+            differences=dict(DIFFERENCES_THAT_MATTER) | dict(known.unique().rows()),
             crews=store.read("listed_boats"),
             blocks=run_blocks(store),
         )
@@ -91,7 +96,7 @@ class Draft:
     register: pl.DataFrame
 
     @cached_property
-    def observed(self) -> Observed:
+    def observed(self) -> pl.DataFrame:
         """Tows with their curves, boats and measuring errors."""
         known, made = self.history, self.made
         return observe_trusted(made.curves, known.tows, known.boats, made.run_points)
@@ -107,6 +112,6 @@ class Draft:
         return reproducibility(self.repeat_pairs, self.observed)
 
     @cached_property
-    def type_homogeneity(self) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity`."""
-        return type_homogeneity(self.observed)
+    def type_consistency(self) -> pl.DataFrame:
+        """Rows of the table `type_consistency`."""
+        return compare_types(self.observed, self.repeat_pairs, self.history.differences).consistency

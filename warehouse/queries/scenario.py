@@ -13,8 +13,8 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.consistency.compared import beside_their_type
-from pipeline.consistency.observed import UNKNOWN_TYPE, newest
+from pipeline.consistency.compared import place_beside_type
+from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.curve import VALID_RATIO, s_of_height
 from pipeline.register.changes import compare_lines, largest_first
 from pipeline.studies.summaries import season_changes
@@ -78,8 +78,8 @@ class Scenario:
         """
 
         def of(draft: Draft) -> pl.DataFrame:
-            seen = draft.observed
-            return beside_their_type(seen if tows == ALL else newest(seen))
+            observed = draft.observed
+            return place_beside_type(observed if tows == ALL else observed.filter("newest"))
 
         compared = self.both(of)
         named = compared.filter(pl.col("boat_type") != UNKNOWN_TYPE).join(

@@ -130,11 +130,6 @@ QUESTIONS: Final = {
 SELECT table_name || '.' || column_name AS name, comment FROM duckdb_columns()
 WHERE comment IS NOT NULL ORDER BY 1
 """,
-    # Every tow next to its type under every method, with the boat's name.
-    "compared_tows": """
-SELECT t.*, coalesce(b.name, t.fsn_no) AS name
-FROM compared_tows AS t LEFT JOIN boats AS b USING (fsn_no) ORDER BY method, tow_id
-""",
     # Counts of one kind over all seasons.
     "counts": """
 SELECT method, code, number FROM quality_counts WHERE kind = ? AND scope = 'all'
@@ -168,20 +163,17 @@ FROM (SELECT *, unnest(flags) AS flag FROM curves) AS c JOIN tows AS t USING (to
 LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
 ORDER BY c.method, c.flag, lower(b.name), c.fsn_no, t.tow_date
 """,
-    # Boats that differ from their type, furthest first; Cw itself instead of its logarithm.
+    # Newest tows that stand out from their type in Cw or B, furthest first, with the boat's name.
     "outliers": """
-SELECT t.* REPLACE (
-         CASE quantity WHEN 'ln_cw_standard' THEN exp("value") ELSE "value" END AS "value",
-         CASE quantity WHEN 'ln_cw_standard' THEN exp(expected) ELSE expected END AS expected,
-         replace(quantity, 'ln_cw_standard', 'cw_standard_kg_m') AS quantity
-       ), b.name
-FROM type_outliers AS t LEFT JOIN boats AS b USING (fsn_no)
-WHERE outside ORDER BY method, abs(deviation_sd) DESC, tow_id, t.quantity
-""",
-    # Predicted Cw next to the tow's, with the boat's name.
-    "predicted": """
-SELECT t.* EXCLUDE ln_ratio, b.name FROM predicted_cw AS t LEFT JOIN boats AS b USING (fsn_no)
-WHERE predicted_cw_kg_m IS NOT NULL ORDER BY method, tow_id
+WITH standing_out AS (
+  SELECT *, 'cw_standard_kg_m' AS quantity, cw_standard_kg_m AS "value",
+         cw_expected_kg_m AS expected, cw_deviation_sd AS deviation_sd
+  FROM compared_tows WHERE cw_outside
+  UNION ALL
+  SELECT *, 'b_m_s', b_m_s, b_expected_m_s, b_deviation_sd FROM compared_tows WHERE b_outside
+)
+SELECT o.*, b.name FROM standing_out AS o LEFT JOIN boats AS b USING (fsn_no)
+ORDER BY method, abs(deviation_sd) DESC, tow_id, quantity
 """,
     "race_days": "SELECT DISTINCT race, race_date FROM race_changes ORDER BY race_date DESC, race",
     # Results of races under two editions, with the boat's name.
@@ -195,6 +187,20 @@ SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.empty
        r.as_of, r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m,
        r.cw_hi_kg_m, r.flags, r.tow_id, r.method, r.verification_code
 FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
+""",
+    # Who won each race, by name.
+    "year_winners": """
+SELECT t.* REPLACE (coalesce(old.name, t.published_winner) AS published_winner,
+                    coalesce(new.name, t.winner) AS winner)
+FROM year_winners AS t
+LEFT JOIN boats AS old ON old.fsn_no = t.published_winner
+LEFT JOIN boats AS new ON new.fsn_no = t.winner
+ORDER BY method, year, race_date, race, crew_class
+""",
+    # The register of every year with the boat's name.
+    "register_years": """
+SELECT t.*, b.name, b.boat_type FROM register_years AS t LEFT JOIN boats AS b USING (fsn_no)
+ORDER BY method, year, fsn_no, rowers, crew_class, empty_thwart
 """,
     # Repeat tows with the boat's name.
     "repeat_pairs": """

@@ -12,6 +12,7 @@ import hashlib
 import json
 import re
 import shutil
+import stat
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -27,7 +28,6 @@ from pipeline.messages import say
 from pipeline.method.definition import Method, parse_method
 from pipeline.register.register import with_empty_thwart
 from pipeline.tables.curves import Curves
-from pipeline.tables.declare import dy
 from pipeline.tables.register import Register
 from warehouse.store.files import TEMPORARY_PREFIX, folder_written_beside
 from warehouse.store.store import Store
@@ -43,12 +43,11 @@ METHOD: Final = "method.toml"
 DECISIONS: Final = "decisions.json"
 CSV: Final = "register.csv"
 XLSX: Final = "register.xlsx"
-INPUTS: Final = "inputs.csv"
 NOTICE: Final = "bericht.md"
 NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
-MEASURED: Final = "measured"
-"""The basis of a line that was computed from a tow."""
+LATER_COLUMNS: Final = {"register": Register, "curves": Curves}
+"""Tables that got more columns since the first editions."""
 
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,59}")
 _LOCK: Final = f"{TEMPORARY_PREFIX}lock"
@@ -65,6 +64,9 @@ class Manifest(BaseModel):
         carried_from: the printed edition of which lines were taken over, if any.
         previous: the edition that it is compared with.
         texts_version: in which words its texts are; None for the first.
+        printed_in: season in which a register was printed; None where it was not noted.
+        sources: SHA-256 of the lists, or of the printed register, by path in the archive. The
+            samples of a tow are in the table `tows`.
         number, after_seal: place in the chain of editions, from 1, and seal of the one published
             before; a number of None where there was no chain yet.
         files: SHA-256 of every other file.
@@ -85,6 +87,8 @@ class Manifest(BaseModel):
     carried_from: str | None
     previous: str | None
     texts_version: str | None = None
+    printed_in: int | None = None
+    sources: dict[str, str] = {}
     number: int | None = None
     after_seal: str | None = None
     files: dict[str, str] = {}
@@ -125,8 +129,32 @@ class Edition:
 
 
 def edition_names(store: Store) -> list[str]:
-    """The published editions, sorted, without any that is still being written."""
-    return sorted(f.name for f in store.editions.glob("[!.]*") if f.is_dir())
+    """Return the published editions, sorted, without any that is still being written.
+
+    An empty folder is none.
+    """
+    folders = [path for path in store.editions.glob("[!.]*") if path.is_dir()]
+    return sorted(path.name for path in folders if any(path.iterdir()))
+
+
+def stray_names(store: Store) -> list[str]:
+    """Return what lies among the editions and is none: files, and empty folders."""
+    names = {path.name for path in store.editions.glob("[!.]*")}
+    return sorted(names - {*edition_names(store)})
+
+
+def is_plain_file(path: Path) -> bool:
+    """Return whether a path is a file of its own: no folder, pipe or link, also no hard link."""
+    try:
+        status = path.lstat()
+    except OSError:
+        return False
+    return stat.S_ISREG(status.st_mode) and status.st_nlink == 1
+
+
+def is_edition_name(name: str) -> bool:
+    """Return whether an edition can have a name: letters, digits, `.`, `_` and `-` of ASCII."""
+    return _NAME.fullmatch(name) is not None and not name.startswith("concept-")
 
 
 def edition_path(store: Store, edition: str) -> Path:
@@ -148,7 +176,7 @@ def check_new_name(store: Store, edition: str) -> None:
         BrokenPromiseError: the name is taken.
         MissingKnowledgeError: it cannot be the name of a folder everywhere, or is a draft's.
     """
-    if not _NAME.fullmatch(edition) or edition.startswith("concept-"):
+    if not is_edition_name(edition):
         raise MissingKnowledgeError(
             "{!r} cannot name an edition: use letters, digits, '.', '_' and '-', "
             "begin with a letter or digit, and not with 'concept-', which marks "
@@ -177,6 +205,8 @@ def read_manifest(path: Path) -> Manifest:
     """
     file = manifest_path(path)
     try:
+        if not file.is_file():  # to read a pipe would wait for ever
+            raise FileNotFoundError(file.name)
         return Manifest.model_validate_json(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, ValidationError) as error:
         reason = str(error).splitlines()[0]
@@ -188,8 +218,38 @@ def read_manifest(path: Path) -> Manifest:
         ) from error
 
 
+def has_doubled_key(content: bytes) -> bool:
+    """Return whether JSON says something twice: the seal covers what is said last, and alone."""
+    is_doubled = False
+
+    def count_keys(pairs: list[tuple[str, object]]) -> dict[str, object]:
+        nonlocal is_doubled
+        is_doubled |= len(dict(pairs)) < len(pairs)
+        return dict(pairs)
+
+    json.loads(content, object_pairs_hook=count_keys)
+    return is_doubled
+
+
+def readable_manifests(store: Store) -> tuple[dict[str, Manifest], dict[str, BrokenPromiseError]]:
+    """Return the manifests of all editions by folder name, and the errors of damaged ones."""
+    manifests, errors = {}, {}
+    for name in edition_names(store):
+        try:
+            manifests[name] = read_manifest(store.editions / name)
+        except BrokenPromiseError as error:
+            errors[name] = error
+    return manifests, errors
+
+
+def chain_head(store: Store) -> Manifest | None:
+    """Return the edition published last; None before the first that is chained."""
+    chained = [m for m in readable_manifests(store)[0].values() if m.number is not None]
+    return max(chained, key=lambda manifest: manifest.number or 0, default=None)
+
+
 def read_edition(store: Store, edition: str) -> Edition:
-    """An edition with its tables.
+    """Read an edition with its tables; what was not yet said when it was published is empty.
 
     Raises:
         MissingKnowledgeError: there is none of that name, or its method is not understood by the
@@ -200,23 +260,13 @@ def read_edition(store: Store, edition: str) -> Edition:
     manifest = read_manifest(path)
     names = [name.removesuffix(PARQUET) for name in manifest.files if name.endswith(PARQUET)]
     tables = {name: read_table(path, name) for name in names}
-    for name in {"register", CHANGES} & tables.keys():
-        tables[name] = with_empty_thwart(tables[name])
-    for name, schema in {"register": Register, "curves": Curves}.items():
-        if name in tables:
-            tables[name] = _with_later_columns(schema, tables[name])
+    if CHANGES in tables:
+        tables[CHANGES] = with_empty_thwart(tables[CHANGES])
     method = None
     if manifest.kind == "recomputed":
         text = (path / METHOD).read_text(encoding="utf-8")
         method = parse_method(text, f"{edition}/{METHOD}", published=True)
     return Edition(manifest, tables, method)
-
-
-def _with_later_columns(schema: type[dy.Schema], frame: pl.DataFrame) -> pl.DataFrame:
-    """A table of an edition, with what was not yet said when it was published, empty."""
-    columns = schema.columns()
-    missing = [n for n, column in columns.items() if column.nullable and n not in frame.columns]
-    return frame.with_columns(pl.lit(None, columns[n].dtype).alias(n) for n in missing)
 
 
 def method_of_edition(store: Store, edition: str) -> Method:
@@ -237,19 +287,25 @@ def method_of_edition(store: Store, edition: str) -> Method:
 
 
 def read_table(path: Path, name: str) -> pl.DataFrame:
-    """A table of an edition.
+    """Read a table of an edition, with the columns that came later, empty.
 
     Raises:
         BrokenPromiseError: the file is missing or damaged.
     """
     try:
-        return pl.read_parquet((path / f"{name}{PARQUET}").read_bytes())
+        frame = pl.read_parquet((path / f"{name}{PARQUET}").read_bytes())
     except (OSError, pl.exceptions.PolarsError) as error:
         raise BrokenPromiseError(
             "edition {}: {}.parquet is missing or damaged; put the folder back from a copy",
             path.name,
             name,
         ) from error
+    if name not in LATER_COLUMNS:
+        return frame
+    frame = with_empty_thwart(frame) if name == "register" else frame
+    later = {n: c.dtype for n, c in LATER_COLUMNS[name].columns().items() if c.nullable}
+    missing = [pl.lit(None, t).alias(n) for n, t in later.items() if n not in frame.columns]
+    return frame.with_columns(missing)
 
 
 def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str, bytes]]) -> Path:

@@ -96,6 +96,10 @@ MOTION = {*LOGS, "gps_m_s", "force_n", "wind_speed_m_s"}
         ({"force_noise": 0.05}, {"force_n"}),
         ({"askew_share": 1.0, "askew_excess": (0.08, 0.08)}, {"force_n"}),
         ({"fast_run_share": 1.0}, MOTION),
+        ({"log_flicker": 0.01}, LOGS),
+        ({"steering_peaks": 2.0, "steering_peak_force": 0.3}, {"force_n"}),
+        ({"surge_m_s": 0.01}, MOTION),
+        ({"force_zero_tow_n": 2.0}, {"force_n"}),
         # Current moves the boat over ground, hence also through the air.
         ({"stream_m_s": 0.1}, {"gps_m_s", "force_n", "wind_speed_m_s"}),
         ({"stream_drift_m_s": 0.1}, {"gps_m_s", "force_n", "wind_speed_m_s"}),
@@ -125,6 +129,8 @@ def test_askew_pulling_raises_water_force_by_its_excess(clean):
         ("surge_force", 0.06, "force_n", True),
         ("force_wander", 0.02, "force_n", True),
         ("force_noise", 0.05, "force_n", True),
+        ("log_flicker", 0.02, "log1_m_s", True),
+        ("surge_m_s", 0.02, "log1_m_s", False),
     ],
 )
 def test_a_random_defect_has_its_size(name, size, column, relative):
@@ -141,6 +147,34 @@ def test_a_random_defect_has_its_size(name, size, column, relative):
         squares.append(np.mean((disturbed / calm - 1.0 if relative else disturbed - calm) ** 2))
     # sd / sqrt(2 * 75) is 8 %; three of those. The rest is better known.
     assert np.sqrt(np.mean(squares)) == pytest.approx(size, rel=0.25)
+
+
+def test_a_flickering_log_has_equal_power_in_every_octave():
+    """1/f: a mean over four times as long is hardly steadier; that of white noise twice."""
+    frame, _, _ = samples_with(log_flicker=0.01, number=1)
+    calm, _, _ = samples_with(number=1)
+    error = (frame["log1_m_s"] / calm["log1_m_s"]).to_numpy().reshape(6, -1) - 1.0
+    sd = [error.reshape(6, -1, 20 * s).mean(axis=2).std() for s in (1, 5)]
+    assert 0.6 < sd[1] / sd[0] < 1.0
+
+
+def test_steering_peaks_push_up_and_stand_anywhere_in_a_run():
+    frame, _, _ = samples_with(steering_peaks=3.0, steering_peak_force=0.3)
+    calm, _, _ = samples_with()
+    excess = (frame["force_n"] / calm["force_n"]).to_numpy().reshape(6, -1) - 1.0
+    assert excess.min() >= -1e-6
+    assert 0.1 < excess.max() < 0.65
+    in_the_middle = excess[:, 15 * 20 : 35 * 20]
+    assert in_the_middle.max() > 0.1
+
+
+def test_slow_gusts_outlast_the_window_over_which_wind_is_averaged():
+    frame, _, _ = samples_with(wind_m_s=4.0, slow_gusts=0.3)
+    steady, _, _ = samples_with(wind_m_s=4.0)
+    wind = (frame["wind_speed_m_s"] - steady["wind_speed_m_s"]).to_numpy().reshape(6, -1)
+    per_second = wind.reshape(6, 50, 20).mean(axis=2)
+    lagged = [np.corrcoef(run[:-5], run[5:])[0, 1] for run in per_second]
+    assert np.mean(lagged) > 0.4
 
 
 def test_gps_is_late_by_its_lag_and_held_between_fixes():
