@@ -47,12 +47,14 @@ def assumed_beside(factors: SeasonFactors | None) -> Assumed:
 def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     """Return the scatter of single run points: pooled over a season, or of each tow alone.
 
-    Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0.
+    Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0. A
+    doubted tow says nothing of the scatter of others.
     """
     if not pooled:
         return curve.own_scatter(c.free)
     residual, is_used, on_curve = _residuals(c)
-    sd_ratio, dof = pool_scatter(residual, is_used, c.season_group)
+    is_trusted = is_used & c.tows.trusted[:, None]
+    sd_ratio, dof = pool_scatter(residual, is_trusted, c.season_group)
     is_known = np.isfinite(sd_ratio) & is_used.any(axis=1)
     mean_cw = np.where(is_used, on_curve, 0.0).sum(axis=1) / np.maximum(is_used.sum(axis=1), 1)
     variance = (np.where(is_known, sd_ratio, 0.0) * mean_cw) ** 2

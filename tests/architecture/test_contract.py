@@ -1,4 +1,4 @@
-"""Tables explain themselves; `tests/kept.toml` has the columns that other programs rely on."""
+"""Tables explain themselves."""
 
 import re
 

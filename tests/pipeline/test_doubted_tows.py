@@ -60,8 +60,7 @@ def test_what_a_doubted_tow_reads_moves_no_other_number(world):
     small, large = (curves(doubt(world, [tow], ratio)) for ratio in (1.4, 4.4482))
     numbers = pl.col("tow_id", "cw_kg_m", "cw_best_kg_m")
     others = (one.filter(pl.col("tow_id") != tow).select(numbers) for one in (small, large))
-    # Only the scatter of its runs about their own curve still counts in that of its season.
-    assert_frame_equal(*others, rel_tol=1e-3)
+    assert_frame_equal(*others, rel_tol=1e-6)
 
 
 def test_a_boat_of_which_every_tow_is_doubted_stays_as_measured(world):
