@@ -186,7 +186,7 @@ def test_a_time_rowed_is_in_hours(seconds, shown):
 
 
 def test_words_in_a_list_are_in_the_language_of_the_page():
-    why = [labels.candidate("weight"), labels.candidate("askew")]
+    why = [labels.candidate("length"), labels.candidate("askew")]
     listed = Statement("why", say("{why}"), {"why": why})
-    assert listed(EN) == "unusual weight; perhaps pulled askew"
+    assert listed(EN) == "unusual length; perhaps pulled askew"
     assert listed(NL) == "; ".join(one.spoken("nl") for one in why) != listed(EN)
