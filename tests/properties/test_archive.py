@@ -73,6 +73,7 @@ def read_independently(text: str) -> np.ndarray:
 
 
 def _split(line: str) -> list[str]:
+    csv.field_size_limit(1_000_000)  # damage can be 200,000 digits long, and the limit is less
     try:
         return next(csv.reader([line], delimiter=";", strict=True), [""])
     except csv.Error:
