@@ -2,7 +2,7 @@
 
 import datetime as dt
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Final
 
 import polars as pl
@@ -47,12 +47,13 @@ class Issued:
     """By whom and when certificates are made.
 
     Attributes:
-        day: on which it is said whether they hold.
+        day: on which it is said whether they hold; None for the day on which the register judged
+            its lines.
         issuer: the federation; "" where it gave no name.
         site: where its pages are, to which the QR code leads; "" where nowhere.
     """
 
-    day: dt.date = field(default_factory=dt.date.today)
+    day: dt.date | None = None
     issuer: str = ""
     site: str = ""
 
@@ -114,7 +115,7 @@ def _one(line: Row, issued: Issued, speech: Speech) -> dict[str, object]:
         "qr": _qr(line, code, issued.site),
         "headline": words(told("certified", HEADLINE, line)),
         "interval": _interval(line, speech),
-        "validity": _validity(line, issued.day, speech),
+        "validity": _validity(line, issued.day or line["as_of"], speech),
         "left": [
             (
                 labels.unbroken(say(labels.column(column))),

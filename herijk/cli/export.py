@@ -28,9 +28,20 @@ def export() -> None:
 )
 @data_option
 @option("--edition", help="Edition. Default: the newest.")
+@option(
+    "--as-of",
+    type=Day(),
+    help="Say whether it is valid on this day. Default: the day on which the register judged.",
+)
 @out_option
 @json_option
-def certificate(boat: str | None, store: "Store", edition: str | None, out: Path | None) -> None:
+def certificate(
+    boat: str | None,
+    store: "Store",
+    edition: str | None,
+    as_of: dt.date | None,
+    out: Path | None,
+) -> None:
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
     from assets.settings import read_settings
     from dashboards.documents.certificate import Issued, certificates
@@ -43,7 +54,7 @@ def certificate(boat: str | None, store: "Store", edition: str | None, out: Path
         chosen = edition or current_edition(views)
         fsn_no = boat and choose_boat(views.table("boats"), boat)
         settings = read_settings(store.root)
-        issued = Issued(issuer=settings.issuer, site=settings.site)
+        issued = Issued(day=as_of, issuer=settings.issuer, site=settings.site)
         made = certificates(views, chosen, fsn_no, LANGUAGE.get(), issued, border)
         _write(store, made, "-".join(filter(None, ("certificate", chosen, fsn_no))), out)
 
