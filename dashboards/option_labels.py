@@ -17,7 +17,7 @@ _PLAIN: Final = {
     "status": (say("decided"), say("proposed"), say("inferred")),
     "choice": (
         say("prescribed"), say("estimated"), say("fixed"), say("mean of ratios"),
-        say("ratio of means"), say("free"), say("capped"),
+        say("ratio of means"), say("ratio of robust means"), say("free"), say("capped"),
     ),
 }  # fmt: skip
 """Texts whose key is the same words: steps, where an option comes from, and values."""

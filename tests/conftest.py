@@ -48,6 +48,7 @@ STUDIES: Final = frozenset(
     key.to_user_string()
     for asset in ASSETS
     for key in asset.keys
+    if key.to_user_string() in TABLES
     if asset.group_names_by_key[key] == "consistency"
     or key.to_user_string() in ("correction_steps", "option_effects", "option_curves")
 )

@@ -46,6 +46,7 @@ SHOWN_ON = {
     ),
     "proposal": "flagged",
     "quality.html": "statuses",
+    "years.html": "register_then",
     "register register--json register.html": "register",
     "seasons seasons--json seasons.html": "log_off",
     "seasons.html": "reproducibility",

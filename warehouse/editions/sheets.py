@@ -18,7 +18,6 @@ import polars as pl
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from pipeline.register.register import NO_EMPTY_THWART
-from warehouse.archive.workbooks import read_workbook
 
 CODE_LENGTH: Final = 10
 FORMULA: Final = re.compile(r"(^|[;,\t\r\n])(\s*)([=+\-@])")
@@ -149,6 +148,8 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
     Compared are the cells with their number formats; hidden rows, columns and sheets show nothing.
     """
     import openpyxl  # type: ignore[import-untyped]  # noqa: PLC0415 - a tenth of a second
+
+    from warehouse.archive.workbooks import read_workbook  # noqa: PLC0415 - all of that room
 
     try:
         read_workbook(workbook)  # refuses what would unpack to more than a list needs

@@ -187,7 +187,7 @@ COSTS = {
     **dict.fromkeys(
         [
             *("run missing", "cut in mid-row", "log1 drops out", "log1 stuck", "a run twice"),
-            "wind 999 in a run",
+            *("wind 999 in a run", "time goes back", "clock jumps back"),
         ],
         RUN,
     ),

@@ -102,7 +102,7 @@ def test_gps_may_be_absent_throughout(tmp_path: Path, gps: str) -> None:
     else:
         split[1:] = [[*line[:3], "", *line[4:]] for line in split[1:]]
     path.write_text("\n".join(";".join(line) for line in split))
-    samples, _ = read_samples(path, PROFILE)
+    samples, *_ = read_samples(path, PROFILE)
     assert samples["gps_m_s"].null_count() == len(ROWS)
     assert samples.drop("gps_m_s").equals(EXPECTED.drop("gps_m_s"))
 
@@ -118,8 +118,8 @@ def test_fast_reading_gives_what_careful_reading_gives(
     tmp_path_factory: pytest.TempPathFactory, rows: list[list[str]]
 ) -> None:
     body = "\n".join(";".join(["1", *row[1:]]) for row in rows).encode()
-    header = text_files._header(HEADER, PROFILE)
+    header = text_files._find_header(HEADER, PROFILE)
     fast = text_files._read_fast(body, header, frozenset())
     if fast is not None:
-        careful = text_files._read_cells(body, header).fill_null(float("nan"))
+        careful = text_files._read_cells(body, header, 2).fill_null(float("nan"))
         assert fast.select(sorted(fast.columns)).equals(careful.select(sorted(fast.columns)))
