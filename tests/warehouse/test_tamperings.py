@@ -162,11 +162,18 @@ OF_FILES = {
 """By what is done: how, the edition that is named, and where."""
 
 
+@pytest.fixture(scope="module")
+def rebuilt(published, tmp_path_factory):
+    """Two editions, after a rebuild that has noted them; read only."""
+    bench = published.copy(tmp_path_factory.mktemp("rebuilt"))
+    bench.rebuild()
+    return bench
+
+
 @pytest.fixture
-def rebuilt_copy(published_copy):
-    """Two editions, after a rebuild that has noted them."""
-    published_copy.rebuild()
-    return published_copy
+def rebuilt_copy(rebuilt, tmp_path):
+    """The same, to change at will."""
+    return rebuilt.copy(tmp_path)
 
 
 @pytest.mark.parametrize("name", OF_FILES)
