@@ -6,6 +6,8 @@ import errno
 import io
 import json
 import os
+import re
+import zipfile
 from pathlib import Path
 
 import polars as pl
@@ -348,3 +350,10 @@ def test_an_excluded_tow_does_not_come_back_from_print(bench_of_editions):
     decide(bench, tow["tow_id"], "uitsluiten")
     bench.publish("x", "rebased", carry="gedrukt-2")
     assert line_of(bench, tow)["status"] == "excluded"
+
+
+def test_the_workbook_says_the_day_of_publication_not_the_time_of_writing(published):
+    with zipfile.ZipFile(folder(published) / "register.xlsx") as book:
+        about = book.read("docProps/core.xml").decode()
+    day = read_manifest(folder(published)).published_on
+    assert re.findall(r"\d{4}-\d\d-\d\dT[\d:]+Z", about) == [f"{day}T00:00:00Z"] * 2

@@ -255,7 +255,9 @@ def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
     """Write the sheets, method and decisions of an edition, by file name."""
     contents = {
         folder.CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
-        folder.XLSX: sheets.write_workbook(edition.register, sheets.SHEET_FIELDS),
+        folder.XLSX: sheets.write_workbook(
+            edition.register, sheets.SHEET_FIELDS, edition.manifest.published_on
+        ),
     }
     if edition.method is not None:
         decisions = decisions_up_to(store, edition.manifest.published_on)

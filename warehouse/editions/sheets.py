@@ -131,11 +131,18 @@ def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
     return text.getvalue().encode("utf-8-sig")
 
 
-def write_workbook(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
-    """Write a sheet as XLSX: numbers as numbers, days as days, and no text as a formula."""
+def write_workbook(frame: pl.DataFrame, fields: Sequence[Field], made_on: dt.date) -> bytes:
+    """Write a sheet as XLSX: numbers as numbers, days as days, and no text as a formula.
+
+    Args:
+        frame: rows of the register.
+        fields: the columns of the sheet.
+        made_on: what the file says of when it was made, so that equal sheets have equal bytes.
+    """
     target = io.BytesIO()
     formats: dict[Any, str] = {field.header: _number_format(field) for field in fields}
     with xlsxwriter.Workbook(target, {"in_memory": True, **TEXT_STAYS_TEXT}) as book:
+        book.set_properties({"created": dt.datetime.combine(made_on, dt.time())})
         _cells(frame, fields).write_excel(
             book, SHEET, column_formats=formats, autofit=True, freeze_panes=(1, 1)
         )
