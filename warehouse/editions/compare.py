@@ -15,7 +15,7 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.curve import cw
-from pipeline.method.definition import RUNS_ALONE, method_in_force
+from pipeline.method.definition import RUNS_ALONE, Method, method_in_force
 from pipeline.races.power import curve_of_lines
 from pipeline.register.changes import (
     NO_FACTOR,
@@ -26,7 +26,7 @@ from pipeline.register.changes import (
     steps_of_lines,
 )
 from pipeline.register.printed import rebase_printed
-from pipeline.register.register import LINE, MEASURED, NO_EMPTY_THWART, TOW_DAY
+from pipeline.register.register import LINE, MEASURED, TOW_DAY, tow_days
 from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
@@ -90,9 +90,12 @@ def _with_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
     """The old lines; each printed one with the tow of that day and line, where there is one."""
     if old.method is not None or "tows" not in new.tables:
         return old.register
-    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
-    tows = new.tables["tows"].select("tow_id", *LINE[:-1], thwart, "tow_date")
-    once = tows.unique(TOW_DAY, keep="none", maintain_order=True)
+    tows = new.tables["tows"]
+    once = (
+        tow_days(tows)
+        .with_columns(tows["tow_id"])
+        .unique(TOW_DAY, keep="none", maintain_order=True)
+    )
     return old.register.drop("tow_id").join(once, on=TOW_DAY, how="left", maintain_order="left")
 
 
@@ -112,16 +115,20 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return NO_LADDER
     from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
 
-    printed_in = old.manifest.printed_in or old.manifest.valid_from.year
-    known = KnownMethods.of(store)
-    methods = [known.get(name) for name in known.names]
-    start = old.method or method_in_force(printed_in, methods)
+    start = old.method or _method_in_print(store, old)
     if start is None:
         return NO_LADDER
     blocks = stack_blocks(intake.all_blocks(store), runs)
     before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
     is_known = after is not None and (before is not None or old.method is None)
     return ladder(start, new.method, tows, blocks, (before, after) if is_known else None)
+
+
+def _method_in_print(store: Store, printed: Edition) -> Method | None:
+    """Return the method in force when an edition was printed; None where no method says so."""
+    printed_in = printed.manifest.printed_in or printed.manifest.valid_from.year
+    known = KnownMethods.of(store)
+    return method_in_force(printed_in, [known.get(name) for name in known.names])
 
 
 def _printed_parts(printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition) -> pl.DataFrame:

@@ -126,8 +126,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
     can_be_read = []
     for name, manifest in manifests.items():
         path = store.editions / name
-        of_files = [*check_files(path, manifest)]
-        findings += of_files
+        findings += check_files(path, manifest)
         findings += check_manifest(store, manifest, manifests)
         if all(is_plain_file(path / file) for file in manifest.files):
             can_be_read.append(name)
