@@ -33,7 +33,7 @@ from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.register.replay import RaceRules
 from warehouse.archive.files import read_bytes
@@ -171,7 +171,7 @@ def tasks(world: World, compared: int) -> dict[str, Callable[[], object]]:
         "decode Parquet, polars": partial(both, by_polars, files),
         "blocks from Parquet": partial(both, lambda f: block_sums(by_pyarrow(f), RATE_HZ), files),
         "rebased, all tows, from blocks": partial(
-            recompute, shipped_method(METHODS[0]), all_tows, blocks
+            recompute, read_shipped_method(METHODS[0]), all_tows, blocks
         ),
         "herijk compare, all tows": partial(compared, world.store, *METHODS, RaceRules()),
     } | {

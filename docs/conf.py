@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 from herijk.cli.forms import FORMS, schema
 from herijk.cli.main import app
 from pipeline.assessment.checks import CHECK, Check
-from pipeline.method.definition import Steps
+from pipeline.method.options import Steps
 from pipeline.tables.schemas import STUDY, TABLES, summary_of
 from pipeline.tables.views import VIEWS
 

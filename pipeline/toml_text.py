@@ -10,12 +10,10 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 LONGEST_TEXT: Final = 1_000_000
-MOST_DOTS: Final = 1_000
-"""In a line. A key of 20,000 parts takes 1.6 GB to read; one of 100,000 takes minutes."""
 
 
 def decoded(content: bytes) -> str:
-    """The text of a file.
+    """Return the text of a file.
 
     Raises:
         ValueError: it is not UTF-8.
@@ -30,19 +28,13 @@ def decoded(content: bytes) -> str:
 
 
 def parse_toml(text: str) -> dict[str, object]:
-    """The tables of a text.
+    """Read the tables of a text.
 
     Raises:
         ValueError: it is not TOML, or larger or deeper than a file of settings can be.
     """
-    most = max((line.count(".") for line in text.splitlines()), default=0)
-    if len(text) > LONGEST_TEXT or most > MOST_DOTS:
-        raise ValueError(
-            say(
-                "{} letters, up to {} dots in a line; at most {} and {} can be right",
-                *(len(text), most, LONGEST_TEXT, MOST_DOTS),
-            )
-        )
+    if len(text) > LONGEST_TEXT:
+        raise ValueError(say("{} letters; at most {} can be right", len(text), LONGEST_TEXT))
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -85,7 +77,7 @@ PROBLEMS: Final = {
 
 
 def problem_in_words(problem: "ErrorDetails") -> Sentence:
-    """What is wrong with a value, and the value if `problem` holds it."""
+    """Say what is wrong with a value, and the value if `problem` holds it."""
     kind, limits = problem["type"], problem.get("ctx", {})
     if kind == "value_error":  # of a check of our own
         what = say("{}", limits["error"])

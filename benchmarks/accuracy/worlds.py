@@ -38,7 +38,7 @@ from pipeline.blocks.tows import Tows
 from pipeline.consistency.observed import observe
 from pipeline.consistency.repeats import repeat_pairs
 from pipeline.consistency.types import compare_types
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, truth_rows
 from warehouse.derive.plausible import with_doubts
@@ -124,7 +124,7 @@ def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataF
 def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
     """Tables of an archive as a rebuild makes them; where asked, whether equal boats are alike."""
     tows = with_doubts(archive.tows, plausibility(Tows.of(archive.tows, archive.blocks)))
-    made = recompute(shipped_method(METHOD), tows, archive.blocks, with_bands=False)
+    made = recompute(read_shipped_method(METHOD), tows, archive.blocks, with_bands=False)
     tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
     if equal_boats:
         boats = archive.tows.select("fsn_no", "boat_type").unique()

@@ -88,7 +88,7 @@ def proposal(
     say = speech.say
     lines = {m: compared(views, against, draft_name(m), letter.valid_from) for m in methods}
     about = views.about()
-    titles = {method: known.get(method).titled(language) for method in methods}
+    titles = {method: known.get(method).get_title(language) for method in methods}
     content = {
         "language": language,
         "title": say(

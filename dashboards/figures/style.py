@@ -8,7 +8,8 @@ import altair as alt
 
 from dashboards import labels
 from pipeline.messages import Say, Sentence
-from pipeline.method.definition import RUNS_ALONE, shipped_method, shipped_methods
+from pipeline.method.definition import RUNS_ALONE
+from pipeline.method.reading import list_shipped_methods, read_shipped_method
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -77,7 +78,7 @@ def methods(say: Say) -> Sequence[Any]:
     Others that the data hold have what follows, as on the workbench. Of all that have a look, the
     legend names those that are drawn.
     """
-    known = alt.DomainUnionWith(unionWith=list(shipped_methods()))
+    known = alt.DomainUnionWith(unionWith=list(list_shipped_methods()))
     legend = alt.Legend(values=alt.ExprRef("domain('xOffset')"), labelExpr=methods_named(say))
     inks, shapes = (alt.Scale(domain=known, range=list(looks)) for looks in (OKABE_ITO, SHAPES))
     return _both("method", inks, shapes, title=say("Method"), sort=None, legend=legend)
@@ -91,7 +92,7 @@ def number(channel: Any, field: str, title: str, zero: bool = False, **more: Any
 
 def methods_named(say: Say) -> str:
     """A Vega expression that gives a method that ships, or the workbench's, its name in words."""
-    texts = {name: say(labels.method(name)) for name in (*shipped_methods(), SCENARIO)}
+    texts = {name: say(labels.method(name)) for name in (*list_shipped_methods(), SCENARIO)}
     return f"({json.dumps(texts)})[datum.value] || datum.value"
 
 
@@ -121,7 +122,9 @@ def interval_kind() -> Any:
 
     The `interval` of a row says which, or else its `method`.
     """
-    names = json.dumps([n for n in shipped_methods() if shipped_method(n).interval == RUNS_ALONE])
+    names = json.dumps(
+        [n for n in list_shipped_methods() if read_shipped_method(n).interval == RUNS_ALONE]
+    )
     own = f"datum.interval ? datum.interval == '{RUNS_ALONE}' : indexof({names}, datum.method) >= 0"
     return alt.when(own).then(alt.value([3, 2])).otherwise(alt.value([1, 0]))
 

@@ -12,7 +12,8 @@ from dashboards.speech import Headline
 from dashboards.statements import Change, Number, Statement, Value, number, told
 from dashboards.statements.edition import NEGLIGIBLE
 from pipeline.messages import Sentence, ngettext, pgettext, say
-from pipeline.method.definition import COMPLETE, Method, Steps, basis_of
+from pipeline.method.definition import COMPLETE, Method
+from pipeline.method.options import Steps, find_basis
 from pipeline.method.variant import Difference, differences
 from pipeline.studies.ladder import START, STEP_ORDER
 from pipeline.tables.row import Row
@@ -124,7 +125,7 @@ def _kept(method: Method, step: str, changed: Sequence[Difference]) -> Iterator[
 
 
 def _words(step: str, option: str, value: object) -> dict[str, Value]:
-    basis = basis_of(step, option, value)
+    basis = find_basis(step, option, value)
     return {
         "option": text(f"{step}.{option}"),
         "after": _value(option, value),
@@ -206,7 +207,7 @@ def _by_status(
     for one in differences(method, first):
         words = _words(one.step, one.option, one.after)
         named = told("option", say("{option}: {after}"), words)
-        status = basis_of(one.step, one.option, one.after).status
+        status = find_basis(one.step, one.option, one.after).status
         changed[status].setdefault(one.step, []).append(named)
     return [
         told(status, VOTED[status], options=[shown(*one) for one in steps.items()])

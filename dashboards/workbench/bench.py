@@ -17,7 +17,9 @@ from dashboards.figures.style import SCENARIO
 from dashboards.option_labels import text
 from dashboards.workbench.form import CONTROLS, Control
 from pipeline.errors import HerijkError
-from pipeline.method.definition import Method, SeasonSteps, Steps, shipped_methods
+from pipeline.method.definition import Method, SeasonSteps
+from pipeline.method.options import Steps
+from pipeline.method.reading import list_shipped_methods
 from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
 from warehouse.queries.history import Draft, History
 from warehouse.queries.scenario import Scenario
@@ -142,7 +144,7 @@ class Bench:
         Raises:
             HerijkError: the name is taken, or the method cannot be.
         """
-        if wanted.name in (*shipped_methods(), SCENARIO):
+        if wanted.name in (*list_shipped_methods(), SCENARIO):
             raise HerijkError("{} is the name of another method; choose another", wanted.name)
         asked = self.asked(wanted.address)
         method = self.method(asked, wanted.name, wanted.title, wanted.reason)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from dashboards.columns import unit_of
-from pipeline.method.definition import SeasonSteps, Steps
+from pipeline.method.definition import SeasonSteps
+from pipeline.method.options import Steps
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,8 @@ from dashboards.workbench.form import CONTROLS, Control
 from dashboards.workbench.results import BenchCells, results
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGES, pgettext, spoken
-from pipeline.method.definition import SeasonSteps, shipped_methods
+from pipeline.method.definition import SeasonSteps
+from pipeline.method.reading import list_shipped_methods
 from pipeline.method.variant import Difference
 from warehouse.queries.views import Views
 
@@ -131,7 +132,7 @@ class BenchPage:
             return self._html(usual, refused=str(spoken(error, self.language)))
 
     def _known(self, method: str) -> bool:
-        return method in (*shipped_methods(), *self._bench.known.own)
+        return method in (*list_shipped_methods(), *self._bench.known.own)
 
     def _html(
         self,
@@ -154,7 +155,7 @@ class BenchPage:
             changed=changed,
             refused=refused,
             data=Markup(data),  # noqa: S704 - no text in it closes the element
-            methods=list(shipped_methods()),
+            methods=list(list_shipped_methods()),
             saved=list(self._bench.known.own),
             editions=self._bench.editions(),
             steps={} if refused else self._steps(asked, ranges),

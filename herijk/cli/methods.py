@@ -34,7 +34,7 @@ def methods(context: click.Context, store: "Store") -> None:
     rows = [
         {
             "method": method.name,
-            "title": method.titled(LANGUAGE.get()),
+            "title": method.get_title(LANGUAGE.get()),
             "content_hash": method.content_hash,
             "ships": method.name not in known.own,
         }

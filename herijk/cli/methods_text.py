@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from dashboards.option_labels import text
 from herijk.cli.render import Part, Section, prose
 from pipeline.messages import LANGUAGE, say, tell
-from pipeline.method.definition import Method, basis_of
+from pipeline.method.definition import Method
+from pipeline.method.options import find_basis
 from pipeline.method.variant import Difference, differences
 from pipeline.method.writing import range_text
 from pipeline.tables.row import Row
@@ -45,8 +46,8 @@ def report_on(store: Store, name_or_file: str) -> MethodReport:
     options = differences(shown, known.get(shown.extends)) if shown.extends else _all_options(shown)
     return MethodReport(
         method=shown.name,
-        title=shown.titled(LANGUAGE.get()),
-        description=shown.described(LANGUAGE.get()).strip(),
+        title=shown.get_title(LANGUAGE.get()),
+        description=shown.get_description(LANGUAGE.get()).strip(),
         content_hash=shown.content_hash,
         extends=shown.extends,
         options=list(options),
@@ -90,7 +91,7 @@ def options_table(options: Sequence[Difference], old: str, new: str, title: str 
             "before": ", ".join(map(json.dumps, one.before)),
             "after": json.dumps(one.after),
             "in_words": tell(text(f"{one.step}.{one.option}")),
-            "status": tell(text(f"status.{basis_of(one.step, one.option, one.after).status}")),
+            "status": tell(text(f"status.{find_basis(one.step, one.option, one.after).status}")),
         }
         for one in options
     ]

@@ -12,12 +12,8 @@ from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import BACK, OUT, RUNS_PER_FILE, SAMPLE_SCHEMA, TARGET_SPEED_RATIOS
 from pipeline.errors import HerijkError
-from pipeline.method.definition import (
-    Method,
-    parse_method,
-    shipped_method,
-    shipped_methods,
-)
+from pipeline.method.definition import Method
+from pipeline.method.reading import list_shipped_methods, parse_method, read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.tables.archive import Tows
 from warehouse.store.methods import text_of_file
@@ -55,7 +51,7 @@ def methods() -> tuple[str, ...]:
     >>> "rebased" in methods()
     True
     """
-    return shipped_methods()
+    return list_shipped_methods()
 
 
 def method(name_or_file: str | Path) -> Method:
@@ -69,7 +65,7 @@ def method(name_or_file: str | Path) -> Method:
     """
     file = Path(name_or_file)
     if file.suffix != ".toml":
-        return shipped_method(str(name_or_file))
+        return read_shipped_method(str(name_or_file))
     return parse_method(text_of_file(file), str(file))
 
 

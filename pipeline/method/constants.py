@@ -23,7 +23,7 @@ FEWEST_RUNS: Final = 4
 CAP_HULL_SPEEDS: Final = 3.0
 """Largest B, in hull speeds, where it is capped (P2015: "B-waarden maximeren aan 3x")."""
 
-ONCE_OPTIONS: Final[dict[str, dict[str, Any]]] = {
+FORMER_OPTIONS: Final[dict[str, dict[str, Any]]] = {
     "window": {
         "minimum_s": float(SHORTEST_WINDOW_S),
         "speed_drift_m_s": SPEED_ENDS_M_S,
@@ -34,4 +34,4 @@ ONCE_OPTIONS: Final[dict[str, dict[str, Any]]] = {
     "runs": {"minimum": FEWEST_RUNS},
     "curve": {"cap_hull_speeds": CAP_HULL_SPEEDS},
 }
-"""The same by the names that they had as options, of which the hash of a method is made."""
+"""The constants by the names they had as options; the hash of a method is made with them."""

@@ -7,15 +7,13 @@ and a file is written that names only those. Reading a file is in `pipeline.meth
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from pipeline.method.definition import (
-    Method,
+from pipeline.method.definition import Method, SeasonSteps, join_equal_ranges
+from pipeline.method.options import Steps
+from pipeline.method.reading import (
     MethodFileError,
-    SeasonSteps,
-    Steps,
-    joined,
+    list_shipped_methods,
     parse_method,
-    shipped_method,
-    shipped_methods,
+    read_shipped_method,
 )
 from pipeline.method.writing import (
     covered,
@@ -74,7 +72,7 @@ def variant(
     seasons = [(block.first, block.last) for block in ranges]
     if seasons != [(block.first, block.last) for block in cut_at(base, (s[0] for s in seasons))]:
         raise MethodFileError("{}: the seasons {} are not those of {}", name, seasons, base.name)
-    ships = base.name in shipped_methods() and base == shipped_method(base.name)
+    ships = base.name in list_shipped_methods() and base == read_shipped_method(base.name)
     return Method(
         name=name,
         title=title,
@@ -82,7 +80,7 @@ def variant(
         description=description,
         description_en=description,
         extends=base.name if ships else base.extends,
-        ranges=joined(ranges),
+        ranges=join_equal_ranges(ranges),
         validity=base.validity,
     )
 

@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
-from pipeline.method.definition import Steps
+from pipeline.method.options import Steps
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ import polars as pl
 from pipeline.arrays import IntArray
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.blocks.tows import Tows
-from pipeline.method.definition import Calibration, Method, Steps
+from pipeline.method.definition import Method
+from pipeline.method.options import Calibration, Steps
 from pipeline.recompute.facts import with_expected_mass, with_expected_water
 from pipeline.recompute.options import StepOptions
 from pipeline.recompute.run_cache import RunCache

@@ -16,7 +16,8 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.assessment.assess import add_status, assess
 from pipeline.assessment.run_choice import with_run_choice
-from pipeline.method.definition import Method, Steps
+from pipeline.method.definition import Method
+from pipeline.method.options import Steps
 from pipeline.quantiles import t_quantile
 from pipeline.races.race import power_per_rower_w
 from pipeline.recompute.anemometer import diagnose_anemometers

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import polars as pl
 
-from pipeline.method.definition import Method, method_in_force
+from pipeline.method.definition import Method, find_method_in_force
 from pipeline.register.changes import compare_lines, steps_of_lines
 from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name, lines_on_days
 from pipeline.register.replay import RaceRules, replay, winner_changes
@@ -85,7 +85,7 @@ def registers_of_years(
 
 def published_method(season: int, methods: Sequence[Method]) -> Method:
     """Return the method by which a season's register was published; the first if none says so."""
-    return method_in_force(season, methods) or methods[0]
+    return find_method_in_force(season, methods) or methods[0]
 
 
 def steps_between(

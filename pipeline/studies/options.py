@@ -18,7 +18,8 @@ import polars as pl
 from pipeline import curve
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.hull import hull_speed_m_s
-from pipeline.method.definition import Method, Steps
+from pipeline.method.definition import Method
+from pipeline.method.options import Steps
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
 from pipeline.recompute.recompute import evaluate

@@ -8,7 +8,8 @@ import pytest
 from dashboards.figures import FIGURES
 from herijk.cli.main import app
 from pipeline.assessment.checks import CODES
-from pipeline.method.definition import Steps, shipped_methods
+from pipeline.method.options import Steps
+from pipeline.method.reading import list_shipped_methods
 from pipeline.tables.schemas import TABLES
 from pipeline.tables.views import VIEWS
 from tests.architecture.repository import ROOT, modules, read, tracked_files
@@ -35,7 +36,7 @@ KNOWN = {
     "view": set(VIEWS),
     "figure": set(FIGURES),
     "check": set(CODES),
-    "method": set(shipped_methods()),
+    "method": set(list_shipped_methods()),
     "option": OPTIONS,
     "command": COMMANDS,
 }
@@ -52,7 +53,7 @@ def test_options_and_checks_are_documented():
     assert rows_named("docs/method-details.md", set(CODES)) == set(CODES)
 
 
-@pytest.mark.parametrize("name", shipped_methods())
+@pytest.mark.parametrize("name", list_shipped_methods())
 def test_every_shipped_method_is_documented(name):
     assert f"`{name}`" in read("docs/method.md")
 

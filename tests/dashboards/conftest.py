@@ -11,7 +11,7 @@ from dashboards.guard import listen
 from dashboards.site.render import build_site
 from dashboards.workbench.bench import Bench
 from dashboards.workbench.server import LOOPBACK, address, serving
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from tests.conftest import METHODS, Workbench, shared
 from tests.dashboards.browser import CHROMIUM, FLAGS, HIDDEN_BARS, OWN, WIDTHS
 from warehouse.editions.publish import Terms, publish
@@ -43,7 +43,7 @@ def _attack(built, root):
     store = Store(data)
     for edition, method in zip(EDITIONS, METHODS, strict=True):
         terms = Terms(edition, dt.date(2015, 1, 1), "SKC <8 mei>", PUBLISHED_ON)
-        publish(store, shipped_method(method), terms)
+        publish(store, read_shipped_method(method), terms)
     Workbench(built.archive, data).rebuild()
     with duckdb.connect(store.database) as db:
         for name, which in ((ATTACK, "min"), (FORMULA, "max"), (ACCENT, "mode")):

@@ -7,7 +7,7 @@ import duckdb
 from dashboards.documents import certificate
 from dashboards.speech import Speech
 from dashboards.statements.boat import answers_by_boat
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from warehouse.editions.publish import Terms, publish
 from warehouse.queries.registers import register_report
 from warehouse.queries.views import Views
@@ -46,7 +46,7 @@ def change_lists(archive):
 def test_an_edition_stays_on_pages_register_and_certificates(bench):
     bench.rebuild((METHOD,))
     terms = Terms(EDITION, DAY, "besluit van de ALV", DAY)
-    publish(bench.store, shipped_method(METHOD), terms)
+    publish(bench.store, read_shipped_method(METHOD), terms)
     before, draft = shown(bench.store), register_report(bench.store, f"concept-{METHOD}")
     assert any("the log read" in text for page in before[0] for text in page)
     change_lists(bench.archive)

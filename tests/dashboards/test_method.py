@@ -9,7 +9,8 @@ from dashboards.option_labels import text
 from dashboards.speech import Speech
 from dashboards.statements.edition import NEGLIGIBLE
 from dashboards.statements.method import explained, voted_steps
-from pipeline.method.definition import Steps, basis_of, shipped_method
+from pipeline.method.options import Steps, find_basis
+from pipeline.method.reading import read_shipped_method
 from pipeline.method.variant import differences
 from tests.conftest import METHODS
 from warehouse.queries.views import Views
@@ -48,7 +49,7 @@ def test_every_step_is_explained_and_every_change_is_voted_on(told):
     assert {step.name for step in told.steps} == {
         text(f"step.{name}") for name in Steps.model_fields
     }
-    changed = differences(shipped_method(METHOD), shipped_method(FIRST))
+    changed = differences(read_shipped_method(METHOD), read_shipped_method(FIRST))
     voted = [s.values["options"] for s in told.vote if "options" in s.values]
     options = [option for steps in voted for step in steps for option in step.values["options"]]
     assert sorted(option.values["option"] for option in options) == sorted(
@@ -79,7 +80,7 @@ def test_a_boat_worked_through_adds_up_as_printed(told):
     ("value", "status"), [("mean_of_ratios", "decided"), ("ratio_of_means", "proposed")]
 )
 def test_a_value_has_the_status_of_who_asked_for_it(value, status):
-    assert basis_of("run_point", "estimator", value).status == status
+    assert find_basis("run_point", "estimator", value).status == status
 
 
 def test_steps_by_status_fit_on_a_slide(views):

@@ -18,7 +18,8 @@ from dashboards.workbench.results import results
 from dashboards.workbench.server import LOOPBACK
 from pipeline.assessment.checks import CODES
 from pipeline.errors import HerijkError, UnavailableError
-from pipeline.method.definition import Steps, parse_method
+from pipeline.method.options import Steps
+from pipeline.method.reading import parse_method
 from pipeline.recompute.run_cache import RunCache
 from warehouse.editions.compare import compare
 from warehouse.editions.publish import drafted

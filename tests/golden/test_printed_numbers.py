@@ -19,7 +19,7 @@ from pipeline import curve, hull
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import RUN_SECONDS, RUNS_PER_FILE, SAMPLE_SCHEMA
-from pipeline.method.definition import parse_method
+from pipeline.method.reading import parse_method
 from pipeline.races import race
 from pipeline.recompute.recompute import recompute
 from tests.golden.sources import read_table

@@ -21,7 +21,7 @@ from dashboards.statements import Statement
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.seen import Seen
 from pipeline.blocks.tows import Tows
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.season_log import estimate_season_factors
 from tests.architecture.repository import ROOT
@@ -50,7 +50,7 @@ def frames(of: object) -> dict[str, pl.DataFrame]:
 
 def recomputed() -> dict[str, pl.DataFrame]:
     """Three methods on tows with repeats, in seasons without GPS, with GPS and calibrated."""
-    methods = [shipped_method(name) for name in (*METHODS, "rebased")]
+    methods = [read_shipped_method(name) for name in (*METHODS, "rebased")]
     return frames(recompute_world(WorldSettings((2010, 2012, 2015), 10, 20, 11), methods)[0])
 
 
@@ -59,7 +59,7 @@ def with_two_files() -> dict[str, pl.DataFrame]:
     world = measure(
         world_settings("two-files", seasons=(2010, 2014), tows_per_season=8, rate_hz=10, seed=3)
     )
-    made = recompute(shipped_method("rebased"), world.tows, world.blocks)
+    made = recompute(read_shipped_method("rebased"), world.tows, world.blocks)
     seen = vars(Seen(Tows.of(world.tows, world.blocks)))
     arrays = {name: pl.Series(values) for name, values in seen.items() if name != "tows"}
     return frames(made) | {"seen": pl.DataFrame(arrays).fill_nan(None)}

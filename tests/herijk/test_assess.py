@@ -8,7 +8,7 @@ import pytest
 
 from dashboards.speech import Speech
 from dashboards.statements.tow import statements
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from tests.conftest import METHODS, SMALL
 from tests.warehouse.archive.conftest import TOWS, small_archive
 from warehouse.queries.assess import assess
@@ -35,7 +35,7 @@ def new_tow(bench):
 
 def test_a_new_tow_has_the_number_of_the_next_rebuild_and_leaves_no_trace(bench, new_tow):
     before = hashes(bench.data)
-    found = assess(bench.store, bench.archive, new_tow["tow_id"], shipped_method(METHOD))
+    found = assess(bench.store, bench.archive, new_tow["tow_id"], read_shipped_method(METHOD))
     assert hashes(bench.data) == before
     bench.rebuild(METHODS)
     then = bench.table("curves").filter(tow_id=new_tow["tow_id"], method=METHOD)
@@ -129,7 +129,7 @@ def sound_tow(bench):
 
 
 def test_a_sound_tow_may_go(bench, sound_tow):
-    found = assess(bench.store, bench.archive, sound_tow, shipped_method(METHOD))
+    found = assess(bench.store, bench.archive, sound_tow, read_shipped_method(METHOD))
     kinds = [one.kind for one in statements(found, log_known=True)]
     assert (found.verdict, found.redo, found.checks) == ("good", [], [])
     assert kinds[-1] == "let_go"
@@ -139,7 +139,7 @@ def test_a_sound_tow_may_go(bench, sound_tow):
 def test_what_goes_wrong_in_a_tow_is_found_on_the_quay(bench, sound_tow, what):
     change, finding, redo = SPOILED[what]
     edit_samples(bench, sound_tow, change)
-    found = assess(bench.store, bench.archive, sound_tow, shipped_method(METHOD))
+    found = assess(bench.store, bench.archive, sound_tow, read_shipped_method(METHOD))
     row = next(one for one in found.first_assessment if one["finding"] == finding)
     if redo is None:
         assert (row["verdict"], found.redo) == ("tow_again", None)
@@ -180,7 +180,7 @@ def test_a_run_towed_again_is_named_and_can_be_used_as_is_said(bench, sound_tow,
     mine = next(place for place, row in enumerate(rows) if row.startswith(sound_tow))
     rows[mine] = rows[mine].replace("1,2,3,4,5,6", selection)
     tow_list.write_text("\n".join(rows), encoding="utf-8")
-    found = assess(bench.store, bench.archive, sound_tow, shipped_method(METHOD))
+    found = assess(bench.store, bench.archive, sound_tow, read_shipped_method(METHOD))
     assert [run["run"] for run in found.runs if run["used"]] == [1, 3, 4, 5, 6, 7]
     assert (found.verdict, found.ways_to_use) == ("good", [])
 
@@ -191,7 +191,7 @@ def test_a_file_with_all_runs_twice_offers_the_second_six(bench, sound_tow):
         return pl.concat([samples, scale("kracht", 1.001)(again)])
 
     edit_samples(bench, sound_tow, twice)
-    found = assess(bench.store, bench.archive, sound_tow, shipped_method(METHOD))
+    found = assess(bench.store, bench.archive, sound_tow, read_shipped_method(METHOD))
     assert [way["use_runs"] for way in found.ways_to_use] == ["7,8,9,10,11,12"]
     assert found.verdict == "look"
 
@@ -210,7 +210,7 @@ def test_a_force_a_fifth_too_high_is_noticed_at_a_first_tow(bench):
     )
     tow_id = compared["tow_id"][0]
     edit_samples(bench, tow_id, scale("kracht", 1.2))
-    found = assess(bench.store, bench.archive, tow_id, shipped_method(METHOD))
+    found = assess(bench.store, bench.archive, tow_id, read_shipped_method(METHOD))
     assert "unlike_its_type" in {row["finding"] for row in found.first_assessment}
     assert found.verdict != "good"
 

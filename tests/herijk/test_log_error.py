@@ -11,7 +11,7 @@ import pytest
 
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from tests.warehouse.edition_bench import EditionBench
 from warehouse.derive.database import build_database
 
@@ -50,7 +50,7 @@ def hard(tmp_path_factory):
         for day in {tow.day for tow in world.tows if tow.season == 2010}:
             toml.write(f'\n[[set_aside]]\ndate = {day}\nreason = "storm"\n')
         toml.write('\n[[log_replaced]]\ndate = 2011-04-01\nlog = "log1"\nreason = "worn"\n')
-    bench.rebuild((shipped_method(METHOD),))
+    bench.rebuild((read_shipped_method(METHOD),))
     asked = ("log_factors", "season_links", "season_steps", "season_diagnosis")
     tables = {name: bench.store.read(name, METHOD) for name in asked}
     tables |= {"about": pl.DataFrame({"key": ["simulated"], "value": ["true"]})}

@@ -3,7 +3,8 @@
 import json
 
 from assets.lake import Folders
-from pipeline.method.definition import Steps, shipped_methods
+from pipeline.method.options import Steps
+from pipeline.method.reading import list_shipped_methods
 from tests.conftest import METHODS, quickly
 from warehouse.store.methods import methods_to_apply
 from warehouse.store.store import Store
@@ -11,7 +12,7 @@ from warehouse.store.store import Store
 
 def test_methods_are_listed_and_shown_with_what_differs_from_their_parent(herijk):
     listed = json.loads(herijk("methods", "--json")[1])["methods"]
-    assert [one["method"] for one in listed] == list(shipped_methods())
+    assert [one["method"] for one in listed] == list(list_shipped_methods())
     for name in METHODS:
         assert name in herijk("methods")[1]
     shown = json.loads(herijk("methods", "show", "corrected-2013", "--json")[1])
@@ -69,12 +70,12 @@ def test_a_method_goes_by_a_list_without_it_and_the_report_says_so(herijk, bench
 
 
 def test_without_a_list_all_that_ship_are_applied_and_those_that_are_there(tmp_path, built):
-    assert methods_to_apply(Store(tmp_path), ()) == list(shipped_methods())
+    assert methods_to_apply(Store(tmp_path), ()) == list(list_shipped_methods())
     assert methods_to_apply(Store(tmp_path), (), ["rebased"]) == ["rebased"]
     assert methods_to_apply(built.store, (), ["rebased"]) == ["as-published", "rebased", METHODS[1]]
     assert methods_to_apply(built.store, ("rebased",)) == ["rebased"]
     folders = Folders(archive="", data=str(built.data))
-    assert [method.name for method in folders.get_methods()] == list(shipped_methods())
+    assert [method.name for method in folders.get_methods()] == list(list_shipped_methods())
 
 
 def test_editions_and_methods_are_compared_with_each_other(herijk, published):

@@ -10,7 +10,7 @@ import pytest
 
 from herijk.simulate import Defects, WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from tests.warehouse.edition_bench import EditionBench
 from warehouse.derive.database import build_database
 from warehouse.queries.assess import assess
@@ -22,7 +22,7 @@ SETTINGS = WorldSettings(
     seed=6,
     defects=Defects.clean,
 )
-METHOD = shipped_method("rebased")
+METHOD = read_shipped_method("rebased")
 OFF = 1.15
 ASKED = ("log_factors", "season_links", "season_steps", "season_diagnosis")
 

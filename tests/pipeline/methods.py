@@ -1,6 +1,7 @@
 """Methods for tests: every step switched off, but for what a test names."""
 
-from pipeline.method.definition import Method, parse_method
+from pipeline.method.definition import Method
+from pipeline.method.reading import parse_method
 
 PLAIN = {
     "speed": '{ correction = "none" }',

@@ -8,7 +8,7 @@ import pytest
 
 from herijk.simulate import Defects, WorldSettings
 from pipeline.blocks.run_blocks import AIR_SUMS
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.anemometer import estimate_scales
 from pipeline.recompute.recompute import recompute
 from tests.worlds import measure
@@ -64,7 +64,7 @@ def test_an_anemometer_that_reads_too_little_moves_no_curve():
         name: values * 0.7 ** power.get(name, 0.0) for name, values in measured.blocks.sums.items()
     }
     faulty = replace(measured, blocks=replace(measured.blocks, sums=sums))
-    method = shipped_method("rebased")
+    method = read_shipped_method("rebased")
     sound, found = (
         recompute(method, w.tows, w.blocks, with_bands=False) for w in (measured, faulty)
     )

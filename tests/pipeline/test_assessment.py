@@ -14,7 +14,7 @@ import pytest
 
 from pipeline.assessment.assess import add_status, assess
 from pipeline.assessment.checks import CODES
-from pipeline.method.definition import parse_method, shipped_method
+from pipeline.method.reading import parse_method, read_shipped_method
 
 METHOD = "some-method"
 V0 = 2.5
@@ -469,7 +469,7 @@ def test_a_method_says_which_checks_reject() -> None:
         '[steps.assessment]\nreject = ["few_runs"]\n'
         '[[overrides]]\nrange = "2014:"\nassessment = { reject = ["few_runs", "slow_tow"] }\n'
     )
-    strict, parent = parse_method(text, "strict.toml"), shipped_method("rebased-2015")
+    strict, parent = parse_method(text, "strict.toml"), read_shipped_method("rebased-2015")
     assert strict.for_season(2012).assessment.reject == ("few_runs",)
     assert strict.for_season(2014).assessment.reject == ("few_runs", "slow_tow")
     assert parent.for_season(2014).assessment.reject == ()

@@ -4,7 +4,7 @@ import polars as pl
 import pytest
 
 from herijk.simulate import WorldSettings, world_settings
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
 from tests.worlds import measure
@@ -13,7 +13,7 @@ from tests.worlds import measure
 @pytest.fixture(scope="module", params=["rebased", "rebased-2015"])
 def made(request) -> Recomputed:
     world = measure(WorldSettings((2010, 2014), 12, 20, 4))
-    return recompute(shipped_method(request.param), world.tows, world.blocks)
+    return recompute(read_shipped_method(request.param), world.tows, world.blocks)
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def test_two_files_with_logs_that_differ_widen_the_interval_where_nothing_calibr
     world = measure(
         world_settings("two-files", seasons=(2010, 2014), tows_per_season=8, rate_hz=10, seed=3)
     )
-    made = recompute(shipped_method("rebased"), world.tows, world.blocks, with_bands=False)
+    made = recompute(read_shipped_method("rebased"), world.tows, world.blocks, with_bands=False)
     by_log = made.uncertainty_budget.filter(component="calibration").join(world.truth, on="tow_id")
     two, old = pl.col("second_log_factor").is_not_null(), pl.col("season") == 2010
     u = [by_log.filter(two == files, old)["u_ratio"].mean() for files in (True, False)]

@@ -7,7 +7,7 @@ import pytest
 
 from benchmarks.accuracy.foreign import reading, runs
 from herijk.simulate import WorldSettings
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
 from pipeline.season_log.priors import PRIORS
@@ -25,7 +25,7 @@ def world() -> Measured:
 
 @pytest.fixture(scope="module")
 def made(world) -> Recomputed:
-    return recompute(shipped_method("rebased"), world.tows, world.blocks)
+    return recompute(read_shipped_method("rebased"), world.tows, world.blocks)
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +76,7 @@ def test_errors_are_as_large_as_the_budget_says(world):
     squares = []
     for seed in range(8):
         drawn = with_what_is_assumed(world, np.random.default_rng(seed))
-        made = recompute(shipped_method("rebased"), drawn.tows, drawn.blocks, with_bands=False)
+        made = recompute(read_shipped_method("rebased"), drawn.tows, drawn.blocks, with_bands=False)
         of_tow = made.uncertainty_budget.group_by("tow_id")
         variance = of_tow.agg((pl.col("u_ratio") ** 2).sum().alias("variance"))
         held = made.curves.join(world.truth, on="tow_id").join(variance, on="tow_id")

@@ -9,7 +9,7 @@ import pytest
 from polars.testing import assert_frame_equal
 
 from herijk.simulate import WorldSettings
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, with_force_ratio
 
@@ -31,7 +31,7 @@ def doubt(world: Measured, names: list[str], ratio: float) -> Measured:
 
 
 def curves(world: Measured) -> pl.DataFrame:
-    made = recompute(shipped_method("rebased"), world.tows, world.blocks).curves
+    made = recompute(read_shipped_method("rebased"), world.tows, world.blocks).curves
     return made.join(world.truth.drop("season"), on="tow_id").sort("tow_id")
 
 

@@ -5,7 +5,7 @@ import polars as pl
 import pytest
 
 from herijk.simulate import WorldSettings
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.uncertainty import ensemble
 from tests.worlds import measure
@@ -16,7 +16,7 @@ MANY = 20_000
 @pytest.fixture(scope="module")
 def made():
     world = measure(WorldSettings((2010, 2012, 2015), 12, 10, 3))
-    return recompute(shipped_method("rebased"), world.tows, world.blocks, with_bands=False)
+    return recompute(read_shipped_method("rebased"), world.tows, world.blocks, with_bands=False)
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from herijk.simulate import WorldSettings, simulate_world
 from pipeline.consistency.observed import observe
 from pipeline.consistency.repeats import era_shifts, repeat_pairs
 from pipeline.consistency.types import compare_types
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import measure
 
@@ -31,7 +31,8 @@ def histories():
         settings = WorldSettings(rate_hz=10, seed=seed)
         world, measured = simulate_world(settings), measure(settings)
         made = [
-            recompute(shipped_method(m), measured.tows, measured.blocks) for m in (BEFORE, AFTER)
+            recompute(read_shipped_method(m), measured.tows, measured.blocks)
+            for m in (BEFORE, AFTER)
         ]
         curves, points = (pl.concat(getattr(m, n) for m in made) for n in ("curves", "run_points"))
         types = [{"fsn_no": b.fsn_no, "boat_type": b.boat_type.name or None} for b in world.boats]

@@ -5,14 +5,14 @@ import polars as pl
 import pytest
 
 from herijk.simulate import WorldSettings
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies.ladder import START, STEP_ORDER, ladder
 from pipeline.studies.options import CHOICES, option_effects
 from tests.worlds import measure
 
-OLD, NEW = shipped_method("as-published"), shipped_method("rebased-2015")
+OLD, NEW = read_shipped_method("as-published"), read_shipped_method("rebased-2015")
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,7 @@ def test_the_effect_of_a_choice_is_that_of_choosing_it(world, effects):
 
 def test_a_tow_whose_log_is_estimated_has_no_effects(world):
     """Another option also moves the factor of its season, which stays that of the method here."""
-    rebased = shipped_method("rebased")
+    rebased = read_shipped_method("rebased")
     links = recompute(rebased, world.tows, world.blocks).tow_instruments
     effects = option_effects(rebased, world.tows, world.blocks, links, RunCache())
     calibrated = world.tows.filter(season=2016)["tow_id"]

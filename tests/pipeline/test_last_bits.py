@@ -10,7 +10,7 @@ import polars as pl
 import pytest
 
 from herijk.simulate import WorldSettings, simulate_world
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.numbers import unequal
 from tests.pipeline.consistency_fleet import consistency_tables
@@ -23,7 +23,7 @@ METHODS = ("as-published", "rebased")
 
 def everything(tows, blocks, boats):
     """All tables of the methods, and the consistency analysis of them."""
-    made = [recompute(shipped_method(name), tows, blocks) for name in METHODS]
+    made = [recompute(read_shipped_method(name), tows, blocks) for name in METHODS]
     names = [field.name for field in fields(made[0]) if field.name != "factors"]
     tables = {name: pl.concat([getattr(one, name) for one in made]) for name in names}
     curves, points = tables["curves"], tables["run_points"]

@@ -7,11 +7,11 @@ import pytest
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import spoken
-from pipeline.method.definition import (
+from pipeline.method.reading import (
     MethodFileError,
+    list_shipped_methods,
     parse_method,
-    shipped_method,
-    shipped_methods,
+    read_shipped_method,
 )
 from tests.pipeline.methods import PLAIN, method_text
 
@@ -145,7 +145,7 @@ def test_a_season_before_the_first_is_missing_knowledge():
 
 def test_tows_of_2014_were_recomputed_by_all_rules_of_2015():
     """Slide "2014 opnieuw berekend": Cw "na alle verbeteringen in berekening"."""
-    published, at_first = map(shipped_method, ("as-published", "as-published-2014"))
+    published, at_first = map(read_shipped_method, ("as-published", "as-published-2014"))
     assert published.for_season(2014) == published.for_season(2015)
     assert at_first.for_season(2014) == published.for_season(2013)
 
@@ -209,12 +209,12 @@ def test_the_hash_changes_with_one_season_of_an_override_and_with_the_seasons_co
 )
 def test_a_new_option_leaves_the_methods_of_history_what_they_were(name, begins):
     """Editions name them by this hash: a default that is left out of it changes no method."""
-    assert shipped_method(name).content_hash.startswith(begins)
+    assert read_shipped_method(name).content_hash.startswith(begins)
 
 
-@pytest.mark.parametrize("name", shipped_methods())
+@pytest.mark.parametrize("name", list_shipped_methods())
 def test_only_a_method_that_estimates_log_factors_has_complete_intervals(name):
-    assert shipped_method(name).interval == ("complete" if name == "rebased" else "runs_alone")
+    assert read_shipped_method(name).interval == ("complete" if name == "rebased" else "runs_alone")
 
 
 def test_the_method_of_an_edition_is_read_without_options_that_are_gone() -> None:

@@ -13,7 +13,7 @@ from herijk.simulate import WorldSettings, simulate_tow, simulate_world
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.blocks.tows import Tows
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.facts import with_expected_mass, with_expected_water
 from pipeline.recompute.recompute import recompute
 from pipeline.steps.target import above_target
@@ -86,7 +86,7 @@ def oracle_curve(points: list[dict], cap_m_s: float) -> tuple[float, float]:
 
 @pytest.fixture(scope="module")
 def rebased(measured):
-    return recompute(shipped_method("rebased-2015"), measured.tows, measured.blocks)
+    return recompute(read_shipped_method("rebased-2015"), measured.tows, measured.blocks)
 
 
 @pytest.mark.parametrize("season", SETTINGS.seasons)
@@ -157,7 +157,7 @@ def shuffled(measured: Measured) -> Measured:
 
 def test_the_order_of_tows_and_runs_does_not_matter(measured, rebased):
     other = shuffled(measured)
-    again = recompute(shipped_method("rebased-2015"), other.tows, other.blocks)
+    again = recompute(read_shipped_method("rebased-2015"), other.tows, other.blocks)
     for table in ("run_points", "curves", "log_factors"):
         left, right = (getattr(made, table) for made in (rebased, again))
         key = [c for c in ("tow_id", "season", "run") if c in left.columns]
@@ -166,7 +166,7 @@ def test_the_order_of_tows_and_runs_does_not_matter(measured, rebased):
 
 @pytest.mark.parametrize("name", ["as-published", "rebased-2015"])
 def test_a_tow_does_not_depend_on_the_other_tows(measured, name):
-    chosen = shipped_method(name)
+    chosen = read_shipped_method(name)
     together = recompute(chosen, measured.tows, measured.blocks)
     for tow_id in measured.tows["tow_id"].sample(4, seed=1):
         mine = measured.tows.filter(tow_id=tow_id)
@@ -249,7 +249,7 @@ def test_a_tow_without_gps_gets_the_factor_of_its_log_from_the_other_tows(measur
     marked = (measured.tows["tow_id"].is_in(["2015-001", "2015-004", "2015-007"])).to_numpy()
     world = without_gps(measured, marked)
     made, with_gps = (
-        recompute(shipped_method("rebased"), w.tows, w.blocks) for w in (world, measured)
+        recompute(read_shipped_method("rebased"), w.tows, w.blocks) for w in (world, measured)
     )
     assert made.curves["cw_kg_m"].null_count() == 0
     both = made.curves.join(with_gps.curves, on="tow_id", suffix="_with").filter(pl.Series(marked))
@@ -263,7 +263,7 @@ def test_a_tow_without_gps_gets_the_factor_of_its_log_from_the_other_tows(measur
 def test_of_wind_that_nobody_measured_the_mean_of_the_others_is_taken_off(measured):
     lost = (measured.tows["season"] == 2012).to_numpy()
     world = without_wind(measured, lost)
-    made = recompute(shipped_method("rebased"), world.tows, world.blocks)
+    made = recompute(read_shipped_method("rebased"), world.tows, world.blocks)
     net = pl.col("air_cw_kg_m").mean() / pl.col("still_air_cw_kg_m").mean() - 1.0
     ratio = made.run_points.filter("used").group_by("tow_id", maintain_order=True).agg(net=net)
     told = ratio.join(world.tows, on="tow_id").select("net", "wind_measured")
@@ -279,7 +279,7 @@ def test_of_wind_that_nobody_measured_the_mean_of_the_others_is_taken_off(measur
 
 
 def test_water_that_nobody_measured_is_as_warm_as_other_tows_say(measured):
-    rebased = shipped_method("rebased")
+    rebased = read_shipped_method("rebased")
     lost = (measured.tows["season"] == 2015).to_numpy()
     water = measured.tows["water_temperature_c"]
     tows = measured.tows.with_columns(water_temperature_c=water.set(pl.Series(lost), None))

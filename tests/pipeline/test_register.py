@@ -5,12 +5,12 @@ import datetime as dt
 import polars as pl
 import pytest
 
-from pipeline.method.definition import (
+from pipeline.method.definition import RegisterRule
+from pipeline.method.reading import (
     MethodFileError,
-    RegisterRule,
+    list_shipped_methods,
     parse_method,
-    shipped_method,
-    shipped_methods,
+    read_shipped_method,
 )
 from pipeline.method.writing import method_text
 from pipeline.register.printed import carried_lines, rebase_printed
@@ -125,19 +125,19 @@ def test_people_exclude_a_tow_or_prefer_one(decisions, tow_id):
 
 
 def test_the_rule_stands_in_the_method_and_changes_no_curve():
-    text = method_text(shipped_method("rebased"))
+    text = method_text(read_shipped_method("rebased"))
     assert "six_years_from = 2023" in text
     other = parse_method(text.replace("valid_years = 5", "valid_years = 4"), "x.toml")
     assert other.validity.valid_years == 4
-    assert other.content_hash == shipped_method("rebased").content_hash
+    assert other.content_hash == read_shipped_method("rebased").content_hash
     wrong = 'name = "own"\ntitle = "own"\nextends = "rebased"\n[register]\nyears = 2\n'
     with pytest.raises(MethodFileError, match=r"x.toml, line 5: 'years': unknown key.*valid_years"):
         parse_method(wrong, "x.toml")
 
 
-@pytest.mark.parametrize("name", shipped_methods())
+@pytest.mark.parametrize("name", list_shipped_methods())
 def test_a_method_written_out_reads_back_as_itself(name):
-    method = shipped_method(name)
+    method = read_shipped_method(name)
     read = parse_method(method_text(method), "x.toml")
     for part in ("definition", "validity", "title", "title_en", "description", "description_en"):
         assert getattr(read, part) == getattr(method, part)
@@ -187,7 +187,7 @@ def test_a_printed_line_counts_where_the_newest_tow_has_no_samples(lines, tow_id
     curves, tows = frames(ROWS)
     crews = {"rowers": 8, "crew_class": "H"}
     facts = tows.join(curves.select("tow_id", "fsn_no", "rowers", "crew_class"), on="tow_id")
-    method = shipped_method("rebased")
+    method = read_shipped_method("rebased")
     carried = carried_lines(printed(*lines), FACTORS, method, facts)
     register = draft_register(curves, tows, BOATS, ON, method.validity, NO_DECISIONS, carried)
     line = register.filter(fsn_no="FSN1", **crews).row(0, named=True)
@@ -196,7 +196,7 @@ def test_a_printed_line_counts_where_the_newest_tow_has_no_samples(lines, tow_id
 
 
 def test_a_printed_line_is_rebased_by_the_log_factor_of_its_season():
-    method = shipped_method("rebased")
+    method = read_shipped_method("rebased")
     lines = printed(("FSN9", dt.date(2011, 9, 1), 40.0))
     line = rebase_printed(lines, FACTORS, method).row(0, named=True)
     assert (line["a_kg_m"], line["b_m_s"]) == pytest.approx((40.0 / 1.04**2, 5.0 * 1.04))

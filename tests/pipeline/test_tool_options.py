@@ -8,7 +8,7 @@ import pytest
 
 from herijk.simulate import WorldSettings
 from pipeline.hull import hull_speed_m_s
-from pipeline.method.definition import parse_method, shipped_method
+from pipeline.method.reading import parse_method, read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies.options import TICKS, option_curves, tick_effects
@@ -24,7 +24,7 @@ def world():
 
 @pytest.fixture(scope="module")
 def curves(world):
-    method = shipped_method("rebased-2015")
+    method = read_shipped_method("rebased-2015")
     links = recompute(method, world.tows, world.blocks).tow_instruments
     return option_curves(method, world.tows, world.blocks, links, RunCache())
 

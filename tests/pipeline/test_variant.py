@@ -2,13 +2,9 @@
 
 import pytest
 
-from pipeline.method.definition import (
-    MethodFileError,
-    SeasonSteps,
-    Steps,
-    parse_method,
-    shipped_method,
-)
+from pipeline.method.definition import SeasonSteps
+from pipeline.method.options import Steps
+from pipeline.method.reading import MethodFileError, parse_method, read_shipped_method
 from pipeline.method.variant import cut_at, differences, variant, variant_text
 
 SEASONS = range(2009, 2019)
@@ -26,14 +22,14 @@ def changed(base, step, option, value):
 
 
 def test_ranges_are_cut_where_a_season_or_a_range_begins():
-    cut = cut_at(shipped_method("rebased-2015"), (2010, 2016, 1990))
+    cut = cut_at(read_shipped_method("rebased-2015"), (2010, 2016, 1990))
     assert [(held.first, held.last) for held in cut] == [
         (2009, 2009), (2010, 2011), (2012, 2013), (2014, 2015), (2016, 9999),
     ]  # fmt: skip
 
 
 def test_a_change_of_all_seasons_is_one_line():
-    base = shipped_method("rebased")
+    base = read_shipped_method("rebased")
     made = variant(base, "own", "Mijn", "omdat", changed(base, "runs", "highest_target_ratio", 1.3))
     assert variant_text(made) == (
         'name = "own"\ntitle = "Mijn"\ndescription = "omdat"\nextends = "rebased"\n'
@@ -42,7 +38,7 @@ def test_a_change_of_all_seasons_is_one_line():
 
 
 def test_nothing_changed_is_the_method_itself():
-    base = shipped_method("rebased")
+    base = read_shipped_method("rebased")
     made = variant(base, "own", "t", "", cut_at(base, SEASONS))
     assert differences(made, base) == []
     assert made.content_hash == base.content_hash

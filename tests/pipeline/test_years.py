@@ -6,11 +6,12 @@ import json
 import polars as pl
 import pytest
 
-from pipeline.method.definition import method_in_force, shipped_method
+from pipeline.method.definition import find_method_in_force
+from pipeline.method.reading import read_shipped_method
 from pipeline.register.register import CURVE_COLUMNS, LINE
 from pipeline.register.years import register_years, registers_of_years, steps_between
 
-METHODS = [shipped_method(name) for name in ("as-published", "as-published-2014", "rebased")]
+METHODS = [read_shipped_method(name) for name in ("as-published", "as-published-2014", "rebased")]
 NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 
 
@@ -65,7 +66,7 @@ def test_an_error_of_old_tows_shows_in_the_years_in_which_they_counted():
 
 
 def test_the_register_of_2014_is_that_of_before_the_recomputation():
-    found = [method_in_force(season, METHODS).name for season in (2013, 2014, 2015)]
+    found = [find_method_in_force(season, METHODS).name for season in (2013, 2014, 2015)]
     assert found == ["as-published-2014", "as-published-2014", "as-published"]
     of_2014 = steps_between(STEPS, "as-published-2014", "rebased", by_way_of="as-published")
     own = of_2014.filter(tow_id="2014")
@@ -75,7 +76,7 @@ def test_the_register_of_2014_is_that_of_before_the_recomputation():
 
 
 def test_without_a_method_that_says_so_the_first_counts_as_published():
-    corrected, rebased = shipped_method("corrected-2013"), shipped_method("rebased")
+    corrected, rebased = read_shipped_method("corrected-2013"), read_shipped_method("rebased")
     history = HISTORY.with_columns(
         pl.col("method", "edition").str.replace("as-published$", "corrected-2013")
     )

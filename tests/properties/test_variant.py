@@ -6,13 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dashboards.workbench.form import CONTROLS as OF_MODEL
-from pipeline.method.definition import (
-    SeasonSteps,
-    Steps,
-    parse_method,
-    shipped_method,
-    shipped_methods,
-)
+from pipeline.method.definition import SeasonSteps
+from pipeline.method.options import Steps
+from pipeline.method.reading import list_shipped_methods, parse_method, read_shipped_method
 from pipeline.method.variant import cut_at, differences, variant, variant_text
 
 SEASONS = range(2008, 2020)
@@ -41,7 +37,7 @@ changes = st.sampled_from(CONTROLS).flatmap(
 @st.composite
 def variants(draw):
     """A shipped method with some options changed, each in some of its ranges, or in all."""
-    base = shipped_method(draw(st.sampled_from(shipped_methods())))
+    base = read_shipped_method(draw(st.sampled_from(list_shipped_methods())))
     ranges = cut_at(base, SEASONS)
     steps = [held.steps.model_dump() for held in ranges]
     for (step, option), value, seasons in draw(st.lists(changes, max_size=6)):

@@ -11,7 +11,8 @@ import polars as pl
 
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from pipeline.method.definition import Method, shipped_method
+from pipeline.method.definition import Method
+from pipeline.method.reading import read_shipped_method
 from tests.tables import make_tables
 from warehouse.editions.compare import compare
 from warehouse.editions.publish import Terms, publish
@@ -53,7 +54,9 @@ class EditionBench:
     def store(self) -> Store:
         return Store(self.data)
 
-    def rebuild(self, methods: tuple[Method, ...] = tuple(map(shipped_method, METHODS))) -> None:
+    def rebuild(
+        self, methods: tuple[Method, ...] = tuple(map(read_shipped_method, METHODS))
+    ) -> None:
         """Everything that a rebuild does up to the registers."""
         make_tables(self.store, self.archive, methods, DAY)
 
@@ -64,7 +67,7 @@ class EditionBench:
         valid_from: dt.date = DAY,
         carry: str | None = None,
     ) -> Path:
-        chosen = shipped_method(method) if isinstance(method, str) else method
+        chosen = read_shipped_method(method) if isinstance(method, str) else method
         return publish(self.store, chosen, terms(edition, valid_from), carry)
 
     def tow(self, season: int) -> dict:

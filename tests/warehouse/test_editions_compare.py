@@ -10,7 +10,7 @@ import pytest
 
 import pipeline.recompute.computed
 import pipeline.studies.ladder
-from pipeline.method.definition import parse_method, shipped_method
+from pipeline.method.reading import parse_method, read_shipped_method
 from pipeline.register.changes import compare_lines
 from pipeline.register.replay import RaceRules
 from pipeline.tables.keys import LINE
@@ -54,7 +54,7 @@ def assert_factors_multiply(lines):
         assert product == pytest.approx(row["cw_ratio"], rel=1e-10)
 
 
-AS_PUBLISHED = (shipped_method("as-published"),)
+AS_PUBLISHED = (read_shipped_method("as-published"),)
 
 
 def new_code(monkeypatch):
@@ -81,7 +81,7 @@ def test_between_methods_only_steps_are_causes_and_they_multiply(published):
 def test_one_option_shows_under_its_own_step_alone(bench_of_editions):
     bench = bench_of_editions
     variant = parse_method(VARIANT, "variant.toml")
-    bench.rebuild((shipped_method("as-published"), variant))
+    bench.rebuild((read_shipped_method("as-published"), variant))
     bench.publish("a", "as-published")
     bench.publish("b", variant)
     lines = diff(bench.store, "a", "b")
@@ -121,7 +121,7 @@ def test_method_code_and_one_file_together_are_told_apart(bench_of_editions, mon
     tow = line_with_season(bench, "a", 2009)
     bench.change_force(tow, lambda n: 1.02 * n)
     new_code(monkeypatch)
-    bench.rebuild((shipped_method("rebased"),))
+    bench.rebuild((read_shipped_method("rebased"),))
     bench.publish("b", "rebased")
     lines = diff(bench.store, "a", "b")
     assert_factors_multiply(lines)
@@ -234,7 +234,7 @@ def test_a_printed_line_of_an_earlier_tow_is_told_apart_from_the_newer_tow(bench
 def test_print_of_2014_is_held_against_the_method_of_that_year(bench_of_editions):
     """Early in 2015 the tows of 2014 were recomputed: those steps are causes, not the print."""
     bench = bench_of_editions
-    bench.rebuild((shipped_method("as-published-2014"), *AS_PUBLISHED))
+    bench.rebuild((read_shipped_method("as-published-2014"), *AS_PUBLISHED))
     curves = bench.store.read("curves", "as-published-2014").filter(season=2014)
     tow = bench.store.read("tows").filter(tow_id=curves.drop_nulls("b_m_s")["tow_id"][0])
     line, curve = tow.row(0, named=True), curves.filter(tow_id=tow["tow_id"]).row(0, named=True)

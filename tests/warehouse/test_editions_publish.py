@@ -15,7 +15,7 @@ import pytest
 from polars.testing import assert_frame_equal
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.register.register import LINE
 from tests.warehouse.edition_bench import diff, terms
 from warehouse.derive.registers import published_tables
@@ -63,10 +63,10 @@ def test_an_edition_holds_everything_behind_it(published):
     assert set(about.files) == FILES - {"manifest.json"}
     assert (about.method, about.valid_from) == ("as-published", dt.date(2014, 6, 1))
     assert about.seal == about.expected_seal
-    assert about.method_hash == shipped_method("as-published").content_hash
+    assert about.method_hash == read_shipped_method("as-published").content_hash
     assert edition_of(published).tables.keys() == set(TABLES)
     edition = edition_of(published, "2014-2")
-    shipped = shipped_method("rebased")
+    shipped = read_shipped_method("rebased")
     assert edition.method.content_hash == edition.manifest.method_hash == shipped.content_hash
     assert (edition.method.validity, edition.method.extends) == (shipped.validity, None)
     assert edition.manifest.previous == "2014-1"
@@ -272,8 +272,8 @@ def test_a_printed_register_with_a_line_that_cannot_be_read_is_not_published(wit
 
 def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(with_printed):
     publish_register_of(with_printed)
-    corrected = shipped_method("corrected-2013")
-    with_printed.rebuild((corrected, shipped_method("as-published")))
+    corrected = read_shipped_method("corrected-2013")
+    with_printed.rebuild((corrected, read_shipped_method("as-published")))
     with_printed.publish("2014-1", "corrected-2013", carry="gedrukt-2012")
     printed = edition_of(with_printed, "gedrukt-2012")
     assert (printed.manifest.kind, printed.method) == ("as_printed", None)

@@ -10,7 +10,7 @@ import pytest
 import pipeline.recompute.computed
 import warehouse.editions.verify
 from pipeline.errors import MissingKnowledgeError
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.tables.keys import LINE
 from tests.tables import compute_tables
 from tests.warehouse.edition_bench import DAY, terms
@@ -97,7 +97,7 @@ def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
 def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_copy):
     tow = published_copy.tow(2009)["tow_id"]
     published_copy.change_force(tow, lambda n: 1.02 * n)
-    published_copy.rebuild((shipped_method("as-published"),))
+    published_copy.rebuild((read_shipped_method("as-published"),))
     report = verify(published_copy.store, afresh=False)
     assert report.wrong
     own = [f for f in report.findings if f.kind == "differs" and f.edition == "2014-1"]
@@ -171,7 +171,7 @@ def carried(edition_archive, tmp_path_factory):
     bench = edition_archive.copy(tmp_path_factory.mktemp("carried"))
     file = bench.archive / "sloepregister" / "sloepregister_2012.csv"
     file.write_text(PRINTED, encoding="utf-8")
-    bench.rebuild((shipped_method("corrected-2013"),))
+    bench.rebuild((read_shipped_method("corrected-2013"),))
     publish_printed(bench.store, 2012, terms("printed", dt.date(2012, 5, 1)))
     bench.publish("2014-1", "corrected-2013", carry="printed")
     return bench
@@ -303,7 +303,7 @@ def test_an_edition_of_other_blocks_than_the_samples_give_comes_out_otherwise(be
         for n, power in powers.items()
     )
     store.write("blocks", forged)
-    compute_tables(store, [shipped_method("as-published")], DAY)
+    compute_tables(store, [read_shipped_method("as-published")], DAY)
     bench_of_editions.publish("2014-1")
     findings, wrong = found(bench_of_editions, True, kind="differs")
     assert wrong

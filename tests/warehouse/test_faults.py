@@ -11,7 +11,7 @@ from collections.abc import Callable
 import polars as pl
 import pytest
 
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from tests.tables import compute_tables
 from tests.warehouse.edition_bench import SMALL, EditionBench
 from warehouse.derive.archive_tables import read_archive
@@ -65,7 +65,7 @@ def test_the_quarantine_says_what_each_fault_costs_and_tables_do_too(bench_of_ed
         ],
         key=str,
     )
-    compute_tables(bench.store, [shipped_method("as-published")], DAYS[0])
+    compute_tables(bench.store, [read_shipped_method("as-published")], DAYS[0])
     points = bench.store.read("run_points", "as-published")
     lost_s = found.filter(tow_id="2009-002")["lost_s"].item()
     assert points.filter(tow_id="2009-002")["lost_s"].max() == pytest.approx(lost_s)

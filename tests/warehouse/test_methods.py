@@ -3,7 +3,7 @@
 import pytest
 
 from pipeline.errors import HerijkError
-from pipeline.method.definition import shipped_method, shipped_methods
+from pipeline.method.reading import list_shipped_methods, read_shipped_method
 from warehouse.store.methods import KnownMethods
 
 OWN = """
@@ -27,8 +27,8 @@ def write(file, text, encoding="utf-8"):
 
 
 def test_without_files_there_are_those_that_ship(known):
-    assert known.names == shipped_methods()
-    assert known.get("rebased") == shipped_method("rebased")
+    assert known.names == list_shipped_methods()
+    assert known.get("rebased") == read_shipped_method("rebased")
 
 
 def test_a_file_is_kept_under_its_name(known, tmp_path):

@@ -18,7 +18,7 @@ from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.assessment.plausibility import Shift, plausibility
 from pipeline.assessment.seen import Seen
 from pipeline.blocks.tows import Tows
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from tests.warehouse.edition_bench import EditionBench
 from tests.worlds import measure
 from warehouse.derive.plausible import with_doubts
@@ -26,7 +26,7 @@ from warehouse.editions.publish import lines_to_look_at
 from warehouse.store.editions import read_edition
 
 WORLD = WorldSettings(seasons=(2015, 2016, 2017), tows_per_season=10, rate_hz=20, seed=5)
-METHOD = shipped_method("rebased")
+METHOD = read_shipped_method("rebased")
 
 
 class Archive(EditionBench):

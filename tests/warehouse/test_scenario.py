@@ -4,7 +4,7 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from pipeline.method.definition import parse_method, shipped_method
+from pipeline.method.reading import parse_method, read_shipped_method
 from pipeline.register.register import LINE
 from tests.conftest import METHODS
 from warehouse.queries.history import History
@@ -24,7 +24,7 @@ def history(built):
 
 @pytest.fixture(scope="module")
 def scenario(history):
-    return Scenario(*(history.under(shipped_method(name)) for name in METHODS))
+    return Scenario(*(history.under(read_shipped_method(name)) for name in METHODS))
 
 
 def test_a_draft_is_the_register_of_the_warehouse(scenario, built):

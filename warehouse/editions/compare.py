@@ -15,7 +15,7 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.curve import cw
-from pipeline.method.definition import RUNS_ALONE, Method, method_in_force
+from pipeline.method.definition import RUNS_ALONE, Method, find_method_in_force
 from pipeline.races.power import curve_of_lines
 from pipeline.register.changes import (
     NO_FACTOR,
@@ -128,7 +128,7 @@ def _method_in_print(store: Store, printed: Edition) -> Method | None:
     """Return the method in force when an edition was printed; None where no method says so."""
     printed_in = printed.manifest.printed_in or printed.manifest.valid_from.year
     known = KnownMethods.of(store)
-    return method_in_force(printed_in, [known.get(name) for name in known.names])
+    return find_method_in_force(printed_in, [known.get(name) for name in known.names])
 
 
 def _printed_parts(printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition) -> pl.DataFrame:

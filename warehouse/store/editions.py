@@ -25,7 +25,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.messages import say
-from pipeline.method.definition import Method, parse_method
+from pipeline.method.definition import Method
+from pipeline.method.reading import parse_method
 from pipeline.register.register import with_empty_thwart
 from pipeline.tables.curves import Curves
 from pipeline.tables.register import Register

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Final, Self
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.method.definition import (
-    Method,
+from pipeline.method.definition import Method
+from pipeline.method.reading import (
     MethodFileError,
+    list_shipped_methods,
     parse_method,
-    shipped_method,
-    shipped_methods,
-    shipped_text,
+    read_shipped_method,
+    read_shipped_text,
 )
 from pipeline.toml_text import decoded
 from warehouse.store.files import written_beside
@@ -44,12 +44,12 @@ class KnownMethods:
     def own(self) -> tuple[str, ...]:
         """Names of the folder's own methods, in alphabetical order."""
         files = {file.stem for file in self.folder.glob(f"[!.]*{SUFFIX}")}
-        return tuple(sorted(files - set(shipped_methods())))
+        return tuple(sorted(files - set(list_shipped_methods())))
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all methods: those that ship, then the folder's own."""
-        return (*shipped_methods(), *self.own)
+        return (*list_shipped_methods(), *self.own)
 
     def get(self, name: str) -> Method:
         """A method by name.
@@ -58,8 +58,8 @@ class KnownMethods:
             MissingKnowledgeError: there is no such method.
             MethodFileError: its file has an error, or the method in it has another name.
         """
-        if name in shipped_methods():
-            return shipped_method(name)
+        if name in list_shipped_methods():
+            return read_shipped_method(name)
         file = self.folder / f"{name}{SUFFIX}"
         method = parse_method(self.text(name), str(file), self.text)
         if method.name != name:
@@ -74,8 +74,8 @@ class KnownMethods:
         Raises:
             MissingKnowledgeError: there is no such method.
         """
-        if name in shipped_methods():
-            return shipped_text(name)
+        if name in list_shipped_methods():
+            return read_shipped_text(name)
         if name not in self.own:
             raise MissingKnowledgeError(
                 "there is no method {!r}; the methods are {}", name, ", ".join(self.names)
@@ -106,7 +106,7 @@ class KnownMethods:
         method = self.named(name_or_file)
         if method.name == name_or_file:
             return method.name
-        if method.name in shipped_methods():
+        if method.name in list_shipped_methods():
             raise MethodFileError(
                 "{}: name: {!r} is a method that ships; choose another name",
                 name_or_file,
@@ -130,7 +130,7 @@ def methods_to_apply(store: Store, listed: Sequence[str], asked: Sequence[str] =
     """
     if listed and not asked:
         return list(listed)
-    wanted = {*(asked or shipped_methods()), *_held(store)}
+    wanted = {*(asked or list_shipped_methods()), *_held(store)}
     in_order = dict.fromkeys((*listed, *KnownMethods.of(store).names))
     return [name for name in in_order if name in wanted]
 

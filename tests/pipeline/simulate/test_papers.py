@@ -5,7 +5,7 @@ import pytest
 from herijk.simulate import Defects, WorldSettings, simulate_tow, simulate_world
 from herijk.simulate.papers import RACE_KM, printed_register, race
 from herijk.simulate.practice import practice_of, practices, printed_curve
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import measure
 
@@ -43,7 +43,7 @@ def test_as_published_repeats_what_was_printed(season, most):
     """Written twice, apart: exact where all samples count, near where a person trimmed."""
     settings = WorldSettings(seasons=(season,), **SIZE)
     measured, world = measure(settings), simulate_world(settings)
-    made = recompute(shipped_method("as-published"), measured.tows, measured.blocks).curves
+    made = recompute(read_shipped_method("as-published"), measured.tows, measured.blocks).curves
     again, curves = dict(made.select("tow_id", "cw_kg_m").rows()), curves_of(world)
     for tow in world.tows:
         a, b = curves[tow.tow_id][practice_of(season, 2020)]

@@ -7,7 +7,7 @@ import pytest
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
-from pipeline.method.definition import shipped_method
+from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import run_rows, tow_rows
 from warehouse.archive.plausibility import LEFT_OUT_S, judge_samples
@@ -74,7 +74,7 @@ def judged() -> pl.DataFrame:
         blocks.append(block_sums(found.samples, RATE_HZ).select(tow_id, pl.all()))
     together, listed = pl.concat(blocks), pl.concat(tows)
     runs = run_rows(listed).join(together, on=["tow_id", "run"], how="semi")
-    made = recompute(shipped_method("rebased-2015"), listed, stack_blocks(together, runs))
+    made = recompute(read_shipped_method("rebased-2015"), listed, stack_blocks(together, runs))
     random = made.uncertainty_budget.filter(component="random").select("tow_id", "u_ratio")
     found = (
         pl.DataFrame(planted, schema=["tow_id", "kind", "length_s", "lost"], orient="row")

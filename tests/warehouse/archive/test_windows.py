@@ -6,7 +6,8 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from pipeline.method.definition import Method, parse_method
+from pipeline.method.definition import Method
+from pipeline.method.reading import parse_method
 from tests.tables import compute_tables
 from tests.warehouse.archive.conftest import TOWS, Archive
 from warehouse.derive.archive_tables import read_archive
