@@ -34,17 +34,15 @@ class Seasons(dy.Schema):
     listed = column.count("tows in the tow list that could be read")
     tows = column.count("of which used; the others are in quarantine")
     runs_set_aside = column.count("runs of these that are set aside")
-    lost_s = column.number("s", "time left out of the other runs, all channels", min=0)
+    lost_s = column.number("time left out of the other runs, all channels", min=0)
 
 
 class Tows(TowFacts):
     """Tows accepted into the warehouse, one row each."""
 
     runs_set_aside = column.count("runs to be used that are in quarantine")
-    gps_step_m_s = column.optional(
-        "m/s", "step in which its GPS is written; empty without GPS", min=0
-    )
-    force_step_n = column.optional("N", "step in which its force is written", min=0)
+    gps_step_m_s = column.optional("step in which its GPS is written; empty without GPS", min=0)
+    force_step_n = column.optional("step in which its force is written", min=0)
     doubts = column.texts(
         "checks by which all other tows rule this one out: it needs a look, and takes "
         "no part in what tows share"
@@ -58,14 +56,14 @@ class Tows(TowFacts):
 class TowRuns(RunList):
     """Runs of every tow of which samples can be used."""
 
-    lost_s = column.number("s", "most that is left out of a channel: dropouts, spikes", min=0)
+    lost_s = column.number("most that is left out of a channel: dropouts, spikes", min=0)
 
 
 class HandWindows(PerRun):
     """Windows that a person gave, one row per run; they go before those that are found."""
 
-    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0, max=600)
-    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1, max=600)
+    start_s = dy.Int16(description="start of the window", min=0, max=600)
+    end_s = dy.Int16(description="end of the window", min=1, max=600)
     reason = column.text("why, in the person's words")
 
 
@@ -75,9 +73,9 @@ class TraceSeconds(PerRun):
     second = dy.Int16(primary_key=True, description="second of the run, from 0", min=0)
     speed_m_s = column.speed("log 1: speed through the water as the log said")
     gps_m_s = column.speed("speed over ground; empty without GPS", nullable=True)
-    force_n = column.number("N", "tow force")
-    wind_m_s = column.number("m/s", "apparent wind speed")
-    wind_angle_deg = column.number("deg", "circular mean of the apparent wind", min=0, max=360)
+    force_n = column.number("tow force")
+    wind_m_s = column.number("apparent wind speed")
+    wind_angle_deg = column.number("circular mean of the apparent wind", min=0, max=360)
 
 
 class Quarantine(Fault):
@@ -85,5 +83,5 @@ class Quarantine(Fault):
 
     lost = LOST()
     run = column.run(nullable=True)
-    lost_s = column.optional("s", "time that is lost", min=0)
+    lost_s = column.optional("time that is lost", min=0)
     first_seen = column.day("day on which this fault was first found")

@@ -42,7 +42,7 @@ class RunList(PerRun):
     """Runs of every tow; runs 21 and on are runs 1 and on of the second file."""
 
     direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
-    target_speed_ratio = column.number("1", "intended speed / declared speed", min_exclusive=0)
+    target_speed_ratio = column.number("intended speed / declared speed", min_exclusive=0)
     selected = column.flag("the tow list says to use it")
 
 
@@ -63,25 +63,22 @@ class TowFacts(dy.Schema):
     )
     weight_kg = column.boat_weight("empty boat with oars, before", nullable=True)
     weight_after_kg = column.boat_weight("the same, after", nullable=True)
-    crew_weight_kg = column.optional("kg", "crew and ballast on board", min=0, max=6_000)
-    water_temperature_c = column.optional("C", "water temperature", min=0, max=35)
+    crew_weight_kg = column.optional("crew and ballast on board", min=0, max=6_000)
+    water_temperature_c = column.optional("water temperature", min=0, max=35)
     speed_correction_ratio = column.optional(
-        "1", "speed correction entered by hand, 0.06 for 6 %", min=-0.5, max=0.5
+        "speed correction entered by hand, 0.06 for 6 %", min=-0.5, max=0.5
     )
     altered = column.flag("the boat was altered since its previous tow")
-    sample_rate_hz = dy.Float64(
-        description="samples per second", metadata={"unit": "Hz"}, min=1, max=100_000
-    )
+    sample_rate_hz = dy.Float64(description="samples per second", min=1, max=100_000)
     empty_thwart = column.text("thwart left free", nullable=True)
     freeboard_lowest_m = column.freeboard("freeboard at its lowest")
     freeboard_bow_m = column.freeboard("freeboard at the bow")
     freeboard_stern_m = column.freeboard("freeboard at the stern")
     load_cell_ratio = column.optional(
-        "1", "load cell / known weight, when it was last checked", min_exclusive=0
+        "load cell / known weight, when it was last checked", min_exclusive=0
     )
-    load_cell_sd = column.optional("1", "its standard uncertainty", min=0)
+    load_cell_sd = column.optional("its standard uncertainty", min=0)
     lamp_ratio = column.optional(
-        "1",
         "largest part of a run in which a warning lamp burned; empty where nobody noted it",
         min=0,
     )

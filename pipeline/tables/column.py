@@ -1,4 +1,7 @@
-"""Columns that many tables share, each declared once: meaning, unit and limits."""
+"""Columns that many tables share, each declared once: type, meaning and limits.
+
+The unit of a number is in the name of its column; see `pipeline.tables.display`.
+"""
 
 from functools import partial
 from typing import Any, Final
@@ -13,47 +16,54 @@ LOWER_END: Final = (
 
 
 def text(description: str, **rules: Any) -> dy.String:
-    """Text."""
+    """Declare a text."""
     return dy.String(description=description, **rules)
 
 
-def number(unit: str, description: str, **rules: Any) -> dy.Float64:
-    """A number with its unit; `1` for a ratio."""
-    return dy.Float64(description=description, metadata={"unit": unit}, **rules)
+def number(description: str, unit: str | None = None, **rules: Any) -> dy.Float64:
+    """Declare a number.
+
+    Args:
+        description: its meaning.
+        unit: only where the column's name does not say it (`pipeline.tables.display`): where
+            another column does.
+        rules: limits, as dataframely takes them.
+    """
+    return dy.Float64(description=description, metadata={"unit": unit} if unit else None, **rules)
 
 
-def optional(unit: str, description: str, **rules: Any) -> dy.Float64:
-    """A number that is not always known."""
-    return number(unit, description, nullable=True, **rules)
+def optional(description: str, unit: str | None = None, **rules: Any) -> dy.Float64:
+    """Declare a number that is not always known."""
+    return number(description, unit, nullable=True, **rules)
 
 
-def lower(unit: str, **rules: Any) -> dy.Float64:
-    """Lower end of the interval of the number before it."""
-    return optional(unit, "lower end of its 95 % interval", **rules)
+def lower(**rules: Any) -> dy.Float64:
+    """Declare the lower end of the interval of the number before it."""
+    return optional("lower end of its 95 % interval", **rules)
 
 
-def upper(unit: str, **rules: Any) -> dy.Float64:
-    """Upper end of that interval."""
-    return optional(unit, "upper end", **rules)
+def upper(**rules: Any) -> dy.Float64:
+    """Declare the upper end of that interval."""
+    return optional("upper end", **rules)
 
 
 def count(description: str, least: int = 0, **rules: Any) -> dy.Int32:
-    """How many of something."""
+    """Declare how many there are of something."""
     return dy.Int32(description=description, min=least, **rules)
 
 
 def flag(description: str, **rules: Any) -> dy.Bool:
-    """Yes or no."""
+    """Declare a yes or no."""
     return dy.Bool(description=description, **rules)
 
 
 def day(description: str, **rules: Any) -> dy.Date:
-    """A day."""
+    """Declare a day."""
     return dy.Date(description=description, **rules)
 
 
 def texts(description: str, **rules: Any) -> dy.List:
-    """Several texts, such as codes."""
+    """Declare several texts, such as codes."""
     return dy.List(dy.String(), description=description, **rules)
 
 
@@ -67,13 +77,13 @@ crew_class: Final = partial(text, "H men, D women", regex="^[HD]$")
 empty_thwart: Final = partial(
     text, "thwart that must be left free; empty text where all are manned"
 )
-declared_speed: Final = partial(number, "m/s", "speed v0 the crew declared", min=0.5, max=6.0)
+declared_speed: Final = partial(number, "speed v0 the crew declared", min=0.5, max=6.0)
 
 # Of these a table gives the meaning.
-waterline_length: Final = partial(number, "m", min=2.0, max=25.0)
-beam: Final = partial(number, "m", min=0.5, max=6.0)
-bow_height: Final = partial(number, "m", min=0.1, max=4.0)
-boat_weight: Final = partial(number, "kg", min=50.0, max=20_000.0)
-freeboard: Final = partial(number, "m", nullable=True, min=-0.5, max=4.0)
-speed: Final = partial(number, "m/s", min=0.0, max=15.0)
+waterline_length: Final = partial(number, min=2.0, max=25.0)
+beam: Final = partial(number, min=0.5, max=6.0)
+bow_height: Final = partial(number, min=0.1, max=4.0)
+boat_weight: Final = partial(number, min=50.0, max=20_000.0)
+freeboard: Final = partial(number, nullable=True, min=-0.5, max=4.0)
+speed: Final = partial(number, min=0.0, max=15.0)
 sha256: Final = partial(text, regex="^[0-9a-f]{64}$")

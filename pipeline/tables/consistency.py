@@ -22,54 +22,54 @@ class TypeConsistency(PerMethod):
     n_boats = column.count("boats")
     n_men = column.count("tows of men's crews behind slopes and classes", nullable=True)
     n_women = column.count("tows of women's crews", nullable=True)
-    mean = column.optional("as quantity", "mean of the type")
+    mean = column.optional("mean of the type", unit="as quantity")
     verdict = column.text(
         "equal, differ or open; else why nothing is said: no_type, few_boats, no_scatter, no_b"
     )
     difference_that_matters = column.number(
-        "1", "spread between boats from which they are not equal; the federation sets it", min=0
+        "spread between boats from which they are not equal; the federation sets it", min=0
     )
-    spread_ratio = column.optional("1", "true standard deviation between boats", min=0)
-    spread_lo = column.optional("1", "its 95 % lower bound", min=0)
-    spread_hi = column.optional("1", "its 95 % upper bound; empty: none", min=0)
-    error_ratio = column.optional("1", "standard deviation of the measuring error", min=0)
+    spread_ratio = column.optional("true standard deviation between boats", min=0)
+    spread_lo = column.optional("its 95 % lower bound", min=0)
+    spread_hi = column.optional("its 95 % upper bound; empty: none", min=0)
+    error_ratio = column.optional("standard deviation of the measuring error", min=0)
     repeat_pairs = column.count("pairs of repeat tows, of all types, that the error rests on")
     noise_ratio = column.number(
-        "1", "error by those pairs / by runs and intervals, where it is smaller", min=0, max=1
+        "error by those pairs / by runs and intervals, where it is smaller", min=0, max=1
     )
     zero_sd_n = column.number(
-        "N", "what those pairs add to each tow, as a zero error of the load cell", min=0
+        "what those pairs add to each tow, as a zero error of the load cell", min=0
     )
-    season_sd = column.number("1", "standard deviation of y that tows of a season share", min=0)
+    season_sd = column.number("standard deviation of y that tows of a season share", min=0)
     rest_verdict = column.text("the verdict without the boats that stand out")
     outside = column.texts("boats that stand out, each against all others; slopes are without them")
     farthest = column.fsn_no(nullable=True)
     farthest_ratio = column.optional(
-        "1", "quantity of the boat farthest from what the others predict / as predicted", min=0
+        "quantity of the boat farthest from what the others predict / as predicted", min=0
     )
-    farthest_ratio_lo = column.lower("1", min=0)
-    farthest_ratio_hi = column.upper("1", min=0)
-    women_ratio = column.optional("1", "women's crews / men's, at one weight of the boat", min=0)
-    women_ratio_lo = column.lower("1", min=0)
-    women_ratio_hi = column.upper("1", min=0)
+    farthest_ratio_lo = column.lower(min=0)
+    farthest_ratio_hi = column.upper(min=0)
+    women_ratio = column.optional("women's crews / men's, at one weight of the boat", min=0)
+    women_ratio_lo = column.lower(min=0)
+    women_ratio_hi = column.upper(min=0)
     weight_n = column.count("tows behind the slope on weight", nullable=True)
     weight_n_boats = column.count("boats behind it", nullable=True)
     weight_verdict = column.text("rises, falls, none or open; else why there is no slope")
-    weight_slope = column.optional("1", "relative change for 100 kg more boat")
-    weight_slope_lo = column.lower("1")
-    weight_slope_hi = column.upper("1")
+    weight_slope = column.optional("relative change for 100 kg more boat")
+    weight_slope_lo = column.lower()
+    weight_slope_hi = column.upper()
     weight_r2 = column.optional(
-        "1", "share of the spread within classes that a line on weight explains", min=0, max=1
+        "share of the spread within classes that a line on weight explains", min=0, max=1
     )
     tow_speed_n = column.count("tows behind the slope on tow speed", nullable=True)
     tow_speed_n_boats = column.count("boats behind it", nullable=True)
     tow_speed_verdict = column.text("as weight_verdict, for the speed of the tow within a class")
-    tow_speed_slope = column.optional("1", "relative change for a tow 0.1 m/s faster")
-    tow_speed_slope_lo = column.lower("1")
-    tow_speed_slope_hi = column.upper("1")
-    hull_ratio = column.optional("1", "B / hull speed, median of boats; of B alone", min=0)
-    hull_ratio_lo = column.lower("1", min=0)
-    hull_ratio_hi = column.upper("1", min=0)
+    tow_speed_slope = column.optional("relative change for a tow 0.1 m/s faster")
+    tow_speed_slope_lo = column.lower()
+    tow_speed_slope_hi = column.upper()
+    hull_ratio = column.optional("B / hull speed, median of boats; of B alone", min=0)
+    hull_ratio_lo = column.lower(min=0)
+    hull_ratio_hi = column.upper(min=0)
 
 
 class TypeLinePoints(PerMethod):
@@ -79,10 +79,10 @@ class TypeLinePoints(PerMethod):
     quantity = column.text("as in `type_consistency`", primary_key=True)
     explaining = column.text("weight_kg or declared_speed_m_s", primary_key=True)
     crew_class = column.crew_class(primary_key=True)
-    x = column.number("as explaining", "place on the line", primary_key=True)
-    y = column.number("as quantity", "the line there")
-    lo = column.number("as quantity", "lower end of its 95 % interval")
-    hi = column.number("as quantity", "upper end")
+    x = column.number("place on the line", unit="as explaining", primary_key=True)
+    y = column.number("the line there", unit="as quantity")
+    lo = column.number("lower end of its 95 % interval", unit="as quantity")
+    hi = column.number("upper end", unit="as quantity")
 
 
 class ComparedTows(PerCrewTow):
@@ -92,37 +92,37 @@ class ComparedTows(PerCrewTow):
     season = column.season()
     newest = column.flag("the newest tow of its boat and crew")
     slow = column.flag("towed with too little power: men under 60 W, women under 34 W")
-    weight_kg = column.optional("kg", "empty boat with oars")
-    displacement_kg = column.optional("kg", "boat and crew")
-    waterline_length_m = column.number("m", "length on the waterline that day")
+    weight_kg = column.optional("empty boat with oars")
+    displacement_kg = column.optional("boat and crew")
+    waterline_length_m = column.number("length on the waterline that day")
     declared_speed_m_s = column.speed("speed v0 the crew declared")
-    power_w = column.optional("W", "power per rower at that speed")
+    power_w = column.optional("power per rower at that speed")
     hull_speed_m_s = column.speed(
         "1.25 sqrt(waterline length); also 'B from length' of the tool of 2014"
     )
-    tow_hull_ratio = column.number("1", "declared speed / hull speed")
+    tow_hull_ratio = column.number("declared speed / hull speed")
     speed_case = column.text(
         "low (under 0.67 of hull speed), middle or high (from 0.80)", regex="^(low|middle|high)$"
     )
-    b_hull_ratio = column.optional("1", "B / hull speed; empty without B")
-    a_kg_m = column.number("kg/m", "A")
-    a_lo_kg_m = column.optional("kg/m", "lower end of its 95 % interval, by the runs")
-    a_hi_kg_m = column.upper("kg/m")
-    b_m_s = column.optional("m/s", "B; empty where it is not determined")
-    b_lo_m_s = column.lower("m/s")
-    b_hi_m_s = column.optional("m/s", "upper end; empty: no upper bound")
+    b_hull_ratio = column.optional("B / hull speed; empty without B")
+    a_kg_m = column.number("A")
+    a_lo_kg_m = column.optional("lower end of its 95 % interval, by the runs")
+    a_hi_kg_m = column.upper()
+    b_m_s = column.optional("B; empty where it is not determined")
+    b_lo_m_s = column.lower()
+    b_hi_m_s = column.optional("upper end; empty: no upper bound")
     standard_speed_m_s = column.speed("common speed: median declared speed of the type's tows")
-    cw_standard_kg_m = column.optional("kg/m", "Cw at that speed; empty from B on", min_exclusive=0)
-    cw_standard_lo_kg_m = column.lower("kg/m")
-    cw_standard_hi_kg_m = column.upper("kg/m")
+    cw_standard_kg_m = column.optional("Cw at that speed; empty from B on", min_exclusive=0)
+    cw_standard_lo_kg_m = column.lower()
+    cw_standard_hi_kg_m = column.upper()
     beyond_curve = column.flag("that speed lies outside 85-115 % of the declared speed")
     cw_expected_kg_m = column.optional(
-        "kg/m", "that Cw as the type's other boats predict it; of newest tows", min_exclusive=0
+        "that Cw as the type's other boats predict it; of newest tows", min_exclusive=0
     )
-    cw_deviation_sd = column.optional("1", "difference of ln Cw in sd of the prediction")
+    cw_deviation_sd = column.optional("difference of ln Cw in sd of the prediction")
     cw_outside = column.flag("stands out in Cw: 5 % over all boats of the type", nullable=True)
-    b_expected_m_s = column.optional("m/s", "B as the type's other boats predict it")
-    b_deviation_sd = column.optional("1", "difference in sd of the prediction, above 0: larger B")
+    b_expected_m_s = column.optional("B as the type's other boats predict it")
+    b_deviation_sd = column.optional("difference in sd of the prediction, above 0: larger B")
     b_outside = column.flag("stands out in B", nullable=True)
     candidates = column.texts("codes of what could explain a difference", nullable=True)
     races = dy.Int32(description="races until its next tow; empty: none", nullable=True)
@@ -130,10 +130,10 @@ class ComparedTows(PerCrewTow):
     raced_beyond_curve = column.flag(
         "that speed lies outside 85-115 % of the declared speed", nullable=True
     )
-    raced_power_w = column.optional("W", "power per rower there by its own curve")
+    raced_power_w = column.optional("power per rower there by its own curve")
     raced_high = column.flag("over 100 W (women 57 W)", nullable=True)
     power_ratio_raced = column.optional(
-        "1", "power there by its own curve / by the same runs with the bend of its type"
+        "power there by its own curve / by the same runs with the bend of its type"
     )
 
 
@@ -147,9 +147,9 @@ class RepeatPairs(PerMethod):
     tow_id_before = column.tow_id()
     season = column.season()
     season_before = column.season()
-    cw_ratio = column.number("1", "new / old Cw, at the old declared speed")
-    ln_ratio = column.number("1", "ln of that")
-    e_n = column.optional("1", "difference / both intervals (ISO 13528)")
+    cw_ratio = column.number("new / old Cw, at the old declared speed")
+    ln_ratio = column.number("ln of that")
+    e_n = column.optional("difference / both intervals (ISO 13528)")
 
 
 class EraShifts(PerMethod):
@@ -158,11 +158,11 @@ class EraShifts(PerMethod):
     boat_type = column.text("type of boat, or all", primary_key=True)
     era = column.text("seasons of the older tow", primary_key=True)
     n = column.count("pairs of tows")
-    shift_ratio = column.optional("1", "new / old Cw without ageing, median", min=0)
-    lo = column.lower("1", min=0)
-    hi = column.upper("1", min=0)
+    shift_ratio = column.optional("new / old Cw without ageing, median", min=0)
+    lo = column.lower(min=0)
+    hi = column.upper(min=0)
     apart = column.flag("the interval leaves out 1", nullable=True)
-    ageing_per_year = column.optional("1", "change of ln Cw a year taken out; empty: none")
+    ageing_per_year = column.optional("change of ln Cw a year taken out; empty: none")
     reason = column.text("why there is no shift: few_pairs; else empty")
 
 
@@ -172,12 +172,12 @@ class Reproducibility(PerMethod):
     scope = column.text("all pairs, or an era", primary_key=True)
     n_pairs = column.count("pairs of consecutive tows of one boat and crew")
     n_tows = column.count("tows behind within_sd_ratio")
-    sd_ratio = column.optional("1", "standard deviation of one tow, s_R", min=0)
-    lo = column.lower("1", min=0)
-    hi = column.upper("1", min=0)
-    share_within_1pct = column.optional("1", "share of pairs that differ under 1 %")
-    share_within_2pct = column.optional("1", "the same for 2 %")
-    within_sd_ratio = column.optional("1", "s_r: by the scatter of a tow's runs alone", min=0)
+    sd_ratio = column.optional("standard deviation of one tow, s_R", min=0)
+    lo = column.lower(min=0)
+    hi = column.upper(min=0)
+    share_within_1pct = column.optional("share of pairs that differ under 1 %")
+    share_within_2pct = column.optional("the same for 2 %")
+    within_sd_ratio = column.optional("s_r: by the scatter of a tow's runs alone", min=0)
 
 
 class PredictedCw(PerCrewTow):
@@ -185,13 +185,13 @@ class PredictedCw(PerCrewTow):
 
     boat_type = column.text("type of boat, or unknown")
     standard_speed_m_s = column.speed("median declared speed of type and crew class")
-    cw_kg_m = column.number("kg/m", "Cw of the tow at that speed")
+    cw_kg_m = column.number("Cw of the tow at that speed")
     cw_sd_ratio = column.number(
-        "1", "its standard uncertainty: of the runs, or of its interval if wider", min=0
+        "its standard uncertainty: of the runs, or of its interval if wider", min=0
     )
-    predicted_cw_kg_m = column.optional("kg/m", "Cw as the other boats predict it")
-    predicted_lo_kg_m = column.lower("kg/m")
-    predicted_hi_kg_m = column.upper("kg/m")
-    ln_ratio = column.optional("1", "ln of the tow's Cw / the predicted")
+    predicted_cw_kg_m = column.optional("Cw as the other boats predict it")
+    predicted_lo_kg_m = column.lower()
+    predicted_hi_kg_m = column.upper()
+    ln_ratio = column.optional("ln of the tow's Cw / the predicted")
     disagrees = column.flag("differs by more than both uncertainties", nullable=True)
     reason = column.text("why there is no prediction: few_boats; else empty")

@@ -18,26 +18,23 @@ class Curves(PerTow):
     rowers = column.rowers()
     crew_class = column.crew_class()
     declared_speed_m_s = column.speed("speed v0 the crew declared")
-    a_kg_m = column.optional("kg/m", "A: coefficient at v = 0")
-    b_m_s = column.optional("m/s", "B; empty where it is not determined", min=0)
+    a_kg_m = column.optional("A: coefficient at v = 0")
+    b_m_s = column.optional("B; empty where it is not determined", min=0)
     b_capped = column.flag("B was brought down to its cap and A fitted again")
-    cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
-    cw_lo_kg_m = column.optional("kg/m", column.LOWER_END)
-    cw_hi_kg_m = column.upper("kg/m")
-    cw_best_kg_m = column.optional(
-        "kg/m", "best estimate: by this tow, the boat's others and all seasons"
-    )
-    cw_best_lo_kg_m = column.lower("kg/m")
-    cw_best_hi_kg_m = column.upper("kg/m")
+    cw_kg_m = column.optional("Cw at the declared speed")
+    cw_lo_kg_m = column.optional(column.LOWER_END)
+    cw_hi_kg_m = column.upper()
+    cw_best_kg_m = column.optional("best estimate: by this tow, the boat's others and all seasons")
+    cw_best_lo_kg_m = column.lower()
+    cw_best_hi_kg_m = column.upper()
     cw_others_kg_m = column.optional(
-        "kg/m",
         "Cw with log and load cell as all other boats show them; empty: nothing is estimated",
     )
-    b_lo_m_s = column.optional("m/s", f"{column.LOWER_END}; empty: cannot be told")
-    b_hi_m_s = column.optional("m/s", "upper end; empty: no upper bound")
-    power_w = column.optional("W", "power per rower at the declared speed")
-    residual_sd_ratio = column.optional("1", "sd of the points about the curve / Cw")
-    calibration_factor = column.optional("1", "GPS speed / log speed")
+    b_lo_m_s = column.optional(f"{column.LOWER_END}; empty: cannot be told")
+    b_hi_m_s = column.optional("upper end; empty: no upper bound")
+    power_w = column.optional("power per rower at the declared speed")
+    residual_sd_ratio = column.optional("sd of the points about the curve / Cw")
+    calibration_factor = column.optional("GPS speed / log speed")
     runs_used = dy.Int8(description="points the curve is fitted through", min=0)
     status = column.text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
     flags = column.texts("codes of what a person should look at")
@@ -47,9 +44,9 @@ class CurvePoints(PerTow):
     """Curves over the speeds at which they are valid, 85 to 115 % of the declared speed."""
 
     speed_m_s = column.speed("speed through the water", primary_key=True)
-    cw_kg_m = column.number("kg/m", "Cw at this speed", min_exclusive=0)
-    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, min_exclusive=0)
-    cw_hi_kg_m = column.number("kg/m", "upper end", min_exclusive=0)
+    cw_kg_m = column.number("Cw at this speed", min_exclusive=0)
+    cw_lo_kg_m = column.number(column.LOWER_END, min_exclusive=0)
+    cw_hi_kg_m = column.number("upper end", min_exclusive=0)
 
 
 class Assessments(PerTow):
@@ -60,8 +57,8 @@ class Assessments(PerTow):
         "note: worth knowing; look: somebody must decide; refuse: nothing to register",
         regex=SEVERITY_PATTERN,
     )
-    observed = column.number("as in unit", "what was observed")
-    limit = column.number("as in unit", "the limit that is exceeded, or the nearest")
+    observed = column.number("what was observed", unit="as in unit")
+    limit = column.number("the limit that is exceeded, or the nearest", unit="as in unit")
     unit = column.text("unit of both; 1 for a ratio, a count or yes (1) and no (0)")
     flagged = column.flag("the observed number is beyond its limit")
 
@@ -72,9 +69,9 @@ class UncertaintyBudget(PerTow):
     component = column.text("what is uncertain", primary_key=True)
     shared = column.text("single, season or archive: with whom the error is shared")
     key = column.text("rows with one key share one error")
-    effect_ratio = column.number("1", "change of ln Cw by one standard deviation of it")
-    u_ratio = column.number("1", "relative standard uncertainty", min=0)
-    dof = column.optional("1", "degrees of freedom; empty: not limited")
+    effect_ratio = column.number("change of ln Cw by one standard deviation of it")
+    u_ratio = column.number("relative standard uncertainty", min=0)
+    dof = column.optional("degrees of freedom; empty: not limited")
 
 
 class Ensemble(PerTow):
@@ -86,4 +83,4 @@ class Ensemble(PerTow):
     member = dy.Int16(
         primary_key=True, description="equal numbers of different tows belong together", min=1
     )
-    cw_kg_m = column.number("kg/m", "Cw at the declared speed", min_exclusive=0)
+    cw_kg_m = column.number("Cw at the declared speed", min_exclusive=0)

@@ -23,7 +23,7 @@ class Faults(Fault):
 
     lost = LOST(nullable=True)
     run = column.run(nullable=True)
-    lost_s = column.optional("s", "time that is lost", min=0)
+    lost_s = column.optional("time that is lost", min=0)
 
 
 class ListedBoats(Boats):
@@ -46,7 +46,7 @@ class ListedTows(TowFacts):
 class ListedRuns(RunList):
     """Runs of the listed tows, by the plan of their season."""
 
-    planned_s = column.optional("s", "how long a run should last", min=0)
+    planned_s = column.optional("how long a run should last", min=0)
 
 
 class ListedWindows(HandWindows):
@@ -63,8 +63,8 @@ class WrittenWindows(PerRun):
 
     tow_id = column.tow_id()
     run = column.run()
-    start_s = column.number("s", "start of the window", min=0, max=86_400)
-    end_s = column.number("s", "end of the window", min=0, max=86_400)
+    start_s = column.number("start of the window", min=0, max=86_400)
+    end_s = column.number("end of the window", min=0, max=86_400)
     reason = column.text("why, in the person's words", nullable=True)
 
 
@@ -82,16 +82,16 @@ class ListedRaces(dy.Schema):
     season = column.season()
     race = column.text("name of the race")
     race_date = column.day("day of the race")
-    distance_m = column.number("m", "distance along the course", min=100, max=500_000)
+    distance_m = column.number("distance along the course", min=100, max=500_000)
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
     empty_thwart = column.text("thwart left free, where it is given", nullable=True)
-    rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
+    rowing_time_s = column.number("time rowed", min_exclusive=0)
     stream_m = column.optional(
-        "m", "distance that the current carried the boat", min=-500_000, max=500_000
+        "distance that the current carried the boat", min=-500_000, max=500_000
     )
-    penalty_w = column.optional("W", "penalty", min=-1000, max=1000)
+    penalty_w = column.optional("penalty", min=-1000, max=1000)
     path = column.text("file, relative to the archive")
     line = column.count("line in it", least=2)
 
@@ -101,8 +101,8 @@ class ListedForceChecks(dy.Schema):
 
     season = column.season()
     day = column.day("day of the reading")
-    weight_kg = column.number("kg", "known weight", min=1, max=2000)
-    reading_n = column.number("N", "what the load cell read", min=1, max=30_000)
+    weight_kg = column.number("known weight", min=1, max=2000)
+    reading_n = column.number("what the load cell read", min=1, max=30_000)
     path = column.text("file, relative to the archive")
     line = column.count("line in it", least=2)
 
@@ -113,8 +113,8 @@ class ListedLamps(dy.Schema):
     season = column.season()
     tow_id = column.tow_id()
     run = column.run()
-    start_s = column.number("s", "from the start of the run", min=0, max=600)
-    end_s = column.number("s", "the same, when it went out", min=0, max=600)
+    start_s = column.number("from the start of the run", min=0, max=600)
+    end_s = column.number("the same, when it went out", min=0, max=600)
     path = column.text("file, relative to the archive")
     line = column.count("line in it", least=2)
 
@@ -128,9 +128,9 @@ class PrintedLines(dy.Schema):
     crew_class = column.crew_class()
     empty_thwart = column.empty_thwart()
     has_valid_curve = column.flag("A, B and Cw are of a measured curve")
-    a_kg_m = column.optional("kg/m", "A", min=0, max=1000)
-    b_m_s = column.optional("m/s", "B", min=0.1, max=1000)
-    cw_kg_m = column.optional("kg/m", "Cw", min=0.9, max=1000)
+    a_kg_m = column.optional("A", min=0, max=1000)
+    b_m_s = column.optional("B", min=0.1, max=1000)
+    cw_kg_m = column.optional("Cw", min=0.9, max=1000)
     declared_speed_m_s = column.declared_speed(nullable=True)
     tow_date = column.day("day of the tow", nullable=True)
     path = column.text("file, relative to the archive")
@@ -148,8 +148,8 @@ class SeasonIndex(dy.Schema):
     blocks_key = column.text("name of its blocks in the lake", nullable=True)
     samples = dy.Int64(description="number of samples", nullable=True, min=0)
     wind_read = column.flag("its wind is that of an anemometer", nullable=True)
-    gps_step_m_s = column.optional("m/s", "step in which its GPS is written", min=0)
-    force_step_n = column.optional("N", "step in which its force is written", min=0)
+    gps_step_m_s = column.optional("step in which its GPS is written", min=0)
+    force_step_n = column.optional("step in which its force is written", min=0)
     path = column.text("faulty file, relative to the archive", nullable=True)
     line = dy.Int64(description="line in it", nullable=True, min=1)
     reason_code = column.text("short stable code of the fault", nullable=True)

@@ -37,11 +37,11 @@ class _Line(dy.Schema):
     tow_date = column.day("day of the tow: from then on the line counts", nullable=True)
     valid_until = column.day("last day the line counts", nullable=True)
     declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
-    a_kg_m = column.optional("kg/m", "A")
-    b_m_s = column.optional("m/s", "B; empty where it is not determined")
-    cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
-    cw_lo_kg_m = column.optional("kg/m", column.LOWER_END)
-    cw_hi_kg_m = column.upper("kg/m")
+    a_kg_m = column.optional("A")
+    b_m_s = column.optional("B; empty where it is not determined")
+    cw_kg_m = column.optional("Cw at the declared speed")
+    cw_lo_kg_m = column.optional(column.LOWER_END)
+    cw_hi_kg_m = column.upper()
     basis = column.text(
         "measured; printed_rebased, printed_not_rebased: a printed line whose tow has no samples; "
         "printed: of a register as printed",
@@ -93,7 +93,7 @@ class DueList(PerMethod):
     tow_date = column.day("day of the tow", nullable=True)
     valid_until = column.day("last day it counts", nullable=True)
     declared_speed_m_s = column.speed("speed that was declared for it", nullable=True)
-    power_w = column.optional("W", "power per rower at that speed")
+    power_w = column.optional("power per rower at that speed")
     raced_speed_m_s = column.speed(
         "fastest race of the past year, through the water", nullable=True
     )
@@ -114,9 +114,9 @@ class RegisterChanges(dy.Schema):
     crew_class = column.crew_class(primary_key=True)
     empty_thwart = column.empty_thwart(primary_key=True)
     change = column.text("added, removed, changed or same", regex="^(added|removed|changed|same)$")
-    cw_ratio = column.optional("1", "new / old Cw at the old declared speed")
-    power_ratio = column.optional("1", "new / old power at that speed")
-    time_ratio = column.optional("1", "new / old time at equal power")
+    cw_ratio = column.optional("new / old Cw at the old declared speed")
+    power_ratio = column.optional("new / old power at that speed")
+    time_ratio = column.optional("new / old time at equal power")
     causes = column.text("what made the change, with its factor on Cw, as JSON")
 
 
@@ -131,9 +131,9 @@ class RaceChanges(dy.Schema):
     rowers = column.rowers(primary_key=True)
     crew_class = column.crew_class(primary_key=True)
     empty_thwart = column.empty_thwart(primary_key=True)
-    rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
-    old_power_w = column.optional("W", "power per rower by the old edition")
-    new_power_w = column.optional("W", "the same by the new one")
+    rowing_time_s = column.number("time rowed", min_exclusive=0)
+    old_power_w = column.optional("power per rower by the old edition")
+    new_power_w = column.optional("the same by the new one")
     old_remark = column.text(REMARK, nullable=True)
     new_remark = column.text("the same by the new one", nullable=True)
     old_rank = dy.Int32(description=PLACE, nullable=True)
@@ -156,24 +156,23 @@ class RegisterYears(dy.Schema):
     valid_until = column.day("last day the line counts", nullable=True)
     basis = column.text("what the line rests on, as in register", nullable=True)
     declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
-    a_kg_m = column.optional("kg/m", "A")
-    b_m_s = column.optional("m/s", "B; empty where it is not determined")
-    cw_kg_m = column.optional("kg/m", "Cw at the declared speed")
+    a_kg_m = column.optional("A")
+    b_m_s = column.optional("B; empty where it is not determined")
+    cw_kg_m = column.optional("Cw at the declared speed")
     rank = dy.Int32(
         description="place in the class at equal power; 1 is the fastest", nullable=True
     )
     published_tow_id = column.tow_id(nullable=True)
     published_declared_speed_m_s = column.speed("the same as published", nullable=True)
-    published_a_kg_m = column.optional("kg/m", "A as published")
-    published_b_m_s = column.optional("m/s", "B as published")
-    published_cw_kg_m = column.optional("kg/m", "Cw as published")
+    published_a_kg_m = column.optional("A as published")
+    published_b_m_s = column.optional("B as published")
+    published_cw_kg_m = column.optional("Cw as published")
     published_rank = dy.Int32(description="place in the class as published", nullable=True)
     change = column.text("added, removed, changed or same", regex="^(added|removed|changed|same)$")
-    cw_ratio = column.optional("1", "Cw / Cw as published, at the speed declared then")
-    power_ratio = column.optional("1", "power / power as published, at that speed")
+    cw_ratio = column.optional("Cw / Cw as published, at the speed declared then")
+    power_ratio = column.optional("power / power as published, at that speed")
     gain_in_two_hours_s = dy.Float64(
         description="what the method gives in a race of two hours; minus is less",
-        metadata={"unit": "s"},
         nullable=True,
     )
     exceeds_interval = column.flag("the change is larger than the intervals of both", nullable=True)
@@ -192,4 +191,4 @@ class YearWinners(dy.Schema):
     published_winner = column.text("boat that won; null where nobody has a power", nullable=True)
     winner = column.text("boat that wins under the method", nullable=True)
     winner_changed = column.flag("another crew wins")
-    change_probability = column.optional("1", "how likely it is that another crew than then wins")
+    change_probability = column.optional("how likely it is that another crew than then wins")

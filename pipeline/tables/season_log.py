@@ -8,9 +8,9 @@ class LogFactors(PerMethod):
     """True speed = log speed x factor, per method and season."""
 
     season = column.season(primary_key=True)
-    factor = column.number("1", "true speed / log speed", min_exclusive=0)
-    lo = column.optional("1", "lower end of the 95 % interval; empty where unknown")
-    hi = column.upper("1")
+    factor = column.number("true speed / log speed", min_exclusive=0)
+    lo = column.optional("lower end of the 95 % interval; empty where unknown")
+    hi = column.upper()
     source = column.text(
         "none, prescribed, estimated, gps, or not settled (the search did not come to rest, or the "
         "factor contradicts the season's repeat tows and is not used)",
@@ -25,26 +25,24 @@ class SeasonLinks(PerPart):
     n_tows = column.count("tows of the season")
     n_links = column.count("boats also towed in other seasons")
     component = column.count("connected part of the network; 0 has the dGPS anchor")
-    factor = column.optional("1", "true speed / log speed; empty: not determined")
-    lo = column.lower("1")
-    hi = column.upper("1")
-    ln_sd = column.optional("1", "standard deviation of ln factor")
-    dof = column.optional("1", "its degrees of freedom")
-    repeat_tows_sd = column.optional("1", "part of ln_sd by scatter of repeat tows")
-    gps_sd = column.optional("1", "part of ln_sd by plain GPS")
-    assumed_sd = column.optional(
-        "1", "part of ln_sd by what is assumed of log, load cell and boats"
-    )
+    factor = column.optional("true speed / log speed; empty: not determined")
+    lo = column.lower()
+    hi = column.upper()
+    ln_sd = column.optional("standard deviation of ln factor")
+    dof = column.optional("its degrees of freedom")
+    repeat_tows_sd = column.optional("part of ln_sd by scatter of repeat tows")
+    gps_sd = column.optional("part of ln_sd by plain GPS")
+    assumed_sd = column.optional("part of ln_sd by what is assumed of log, load cell and boats")
 
 
 class SeasonSteps(PerPart):
     """Whether a season's step against the boats' other tows is the log's or the load cell's."""
 
     n_boats = column.count("boats also towed in other seasons")
-    level_step = column.optional("1", "step of ln Cw, by the log as it reads")
-    level_step_sd = column.optional("1", "its standard deviation")
-    force_step = column.optional("1", "the part of it in ln force, as the bend shows")
-    force_step_sd = column.optional("1", "its standard deviation")
+    level_step = column.optional("step of ln Cw, by the log as it reads")
+    level_step_sd = column.optional("its standard deviation")
+    force_step = column.optional("the part of it in ln force, as the bend shows")
+    force_step_sd = column.optional("its standard deviation")
     cause = column.text(
         "log, force (a log error may have come with it), none (no step), or not told",
         regex="^(log|force|none|not told)$",
@@ -63,15 +61,11 @@ class SeasonDiagnosis(PerPart):
         primary_key=True,
     )
     unit = column.text("1 for the logarithm of a factor, N for a force")
-    estimate = column.number("as in unit", "expected size; 0 where surely nothing is wrong")
-    lo = column.number("as in unit", "lower end of its 95 % interval")
-    hi = column.number("as in unit", "upper end")
-    p_fault = column.optional(
-        "1", "probability of such a fault; empty for what there always is", min=0
-    )
-    distance_sd = column.optional(
-        "1", "what is seen against what is assumed, in standard deviations"
-    )
+    estimate = column.number("expected size; 0 where surely nothing is wrong", unit="as in unit")
+    lo = column.number("lower end of its 95 % interval", unit="as in unit")
+    hi = column.number("upper end", unit="as in unit")
+    p_fault = column.optional("probability of such a fault; empty for what there always is", min=0)
+    distance_sd = column.optional("what is seen against what is assumed, in standard deviations")
     verdict = column.text(
         "sound, would not show (one of the usual size would not be found), fault (likelier than "
         "not), cannot be told (10 to 50 %, or one boat alone shows it), alarm (4 standard "
@@ -96,19 +90,19 @@ class SeasonDiagnosis(PerPart):
 class TowInstruments(PerTow):
     """What was found of the instruments of each tow, and is corrected in its curve."""
 
-    factor = column.optional("1", "true speed / log speed; 1 with dGPS; empty: not determined")
-    force_factor = column.number("1", "force read / true force; 1 where no fault was found")
-    force_zero_n = column.number("N", "force read without any; 0 where no fault was found")
-    bend = column.number("1", "q = r / (1 - r) of the boat, r = (v/B)^2 at its usual speed")
+    factor = column.optional("true speed / log speed; 1 with dGPS; empty: not determined")
+    force_factor = column.number("force read / true force; 1 where no fault was found")
+    force_zero_n = column.number("force read without any; 0 where no fault was found")
+    bend = column.number("q = r / (1 - r) of the boat, r = (v/B)^2 at its usual speed")
     askew_ratio = column.number(
-        "1", "of Cw, by being pulled askew: root mean square; 0 where that is unlikely", min=0
+        "of Cw, by being pulled askew: root mean square; 0 where that is unlikely", min=0
     )
-    ln_sd = column.number("1", "their standard deviation in ln Cw / the elasticity 2 + 2 q", min=0)
-    dof = column.optional("1", "its degrees of freedom")
+    ln_sd = column.number("their standard deviation in ln Cw / the elasticity 2 + 2 q", min=0)
+    dof = column.optional("its degrees of freedom")
 
 
 class BestEstimateWeights(PerTow):
     """What the best estimate of a tow rests on: shares of the boat's tows, 1 together."""
 
     rests_on = column.text("the tow that it rests on", primary_key=True)
-    weight = column.number("1", "its share")
+    weight = column.number("its share")

@@ -14,9 +14,9 @@ class CorrectionSteps(dy.Schema):
     position = dy.Int8(primary_key=True, description="place of the step; 0 is the start", min=0)
     step = column.text("step of the method that was exchanged")
     factor = column.number(
-        "1", "Cw after / before the step; they multiply to the total", min_exclusive=0
+        "Cw after / before the step; they multiply to the total", min_exclusive=0
     )
-    cw_kg_m = column.number("kg/m", "Cw at the declared speed after the step")
+    cw_kg_m = column.number("Cw at the declared speed after the step")
 
 
 class SeasonChanges(PerMethod):
@@ -25,9 +25,9 @@ class SeasonChanges(PerMethod):
     from_method = column.text("first method, which the others are compared with")
     season = column.season(primary_key=True)
     tows = column.count("tows with a curve under both", least=1)
-    median_ratio = column.number("1", "median of the ratio", min_exclusive=0)
-    lowest_ratio = column.number("1", "lowest ratio of a tow", min_exclusive=0)
-    highest_ratio = column.number("1", "highest ratio of a tow", min_exclusive=0)
+    median_ratio = column.number("median of the ratio", min_exclusive=0)
+    lowest_ratio = column.number("lowest ratio of a tow", min_exclusive=0)
+    highest_ratio = column.number("highest ratio of a tow", min_exclusive=0)
 
 
 _STUDY = "judgement: what could be chosen either way; tool: what the tool of 2015 let one tick"
@@ -43,7 +43,7 @@ class OptionEffects(PerMethod):
     study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
     tow_id = column.tow_id(primary_key=True)
     option = column.text("option of a step", primary_key=True)
-    cw_effect_ratio = column.number("1", "Cw with the second value / with the first")
+    cw_effect_ratio = column.number("Cw with the second value / with the first")
 
 
 class OptionCurves(PerTow):
@@ -59,9 +59,9 @@ class OptionCurves(PerTow):
     trimming = column.flag("only the steady part of a run", primary_key=True)
     vane = column.flag("wind averaged over 3 s", primary_key=True)
     b_from_length = column.flag("B is hull speed", primary_key=True)
-    a_kg_m = column.number("kg/m", "A")
-    b_m_s = column.optional("m/s", "B; empty where Cw does not rise")
-    cw_kg_m = column.number("kg/m", "Cw at the declared speed")
+    a_kg_m = column.number("A")
+    b_m_s = column.optional("B; empty where Cw does not rise")
+    cw_kg_m = column.number("Cw at the declared speed")
 
 
 class PrintReproduction(PerTow):
@@ -73,10 +73,10 @@ class PrintReproduction(PerTow):
     crew_class = column.crew_class()
     printed_in = dy.Int32(description="year of the first register that printed it")
     speed_m_s = column.speed("declared speed as printed; without it no Cw", nullable=True)
-    printed_a_kg_m = column.optional("kg/m", "A as printed")
-    a_kg_m = column.optional("kg/m", "A by the method")
-    printed_b_m_s = column.optional("m/s", "B as printed")
-    b_m_s = column.optional("m/s", "B by the method")
-    printed_cw_kg_m = column.optional("kg/m", "Cw as printed")
-    cw_kg_m = column.optional("kg/m", "Cw by the method at the printed speed")
-    cw_ratio = column.optional("1", "printed / recomputed Cw")
+    printed_a_kg_m = column.optional("A as printed")
+    a_kg_m = column.optional("A by the method")
+    printed_b_m_s = column.optional("B as printed")
+    b_m_s = column.optional("B by the method")
+    printed_cw_kg_m = column.optional("Cw as printed")
+    cw_kg_m = column.optional("Cw by the method at the printed speed")
+    cw_ratio = column.optional("printed / recomputed Cw")

@@ -3,13 +3,8 @@
 import re
 
 from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
+from pipeline.tables.display import find_number_form
 from pipeline.tables.schemas import TABLES
-
-UNITS = {
-    "m_s": "m/s", "kg_m": "kg/m", "kg": "kg", "m": "m", "s": "s", "n": "N", "w": "W", "c": "C",
-    "hz": "Hz", "deg": "deg",
-}  # fmt: skip
-"""Parts of column names and the unit each stands for, longest first."""
 
 
 def columns():
@@ -19,17 +14,17 @@ def columns():
             yield f"{table}.{name}", column
 
 
-def test_a_unit_in_a_name_is_the_declared_unit_and_every_unit_is_in_the_name():
-    part_of = {unit: part for part, unit in UNITS.items()}
+def test_a_number_says_its_unit_by_its_name_alone():
     wrong = []
     for name, column in columns():
         declared = (column.metadata or {}).get("unit")
-        ending = re.search(rf"_({'|'.join(UNITS)})$", name)
-        if ending and declared not in (None, "1", UNITS[ending[1]]):
-            wrong.append(f"{name} is in {declared}")
-        named = re.search(rf"_{part_of.get(declared)}(_|$)", name) or name.endswith(".cw_sd")
-        if (declared in part_of and not named) or re.search(r"_(km_h|kn|kgf|cm|pct)$", name):
-            wrong.append(f"{name} does not name its unit {declared}")
+        by_name = find_number_form(name.split(".")[1]).unit
+        if declared and (by_name or not declared.startswith("as ")):
+            wrong.append(f"{name}: unit {declared} beside that of its name")
+        if column.dtype.is_integer() and by_name not in ("", "s"):
+            wrong.append(f"{name} is a count and has the unit {by_name}")
+        if re.search(r"_(km_h|kn|kgf|cm|pct)$", name):
+            wrong.append(f"{name} is not in an SI unit")
     assert wrong == []
 
 

@@ -12,6 +12,7 @@ import duckdb
 import polars as pl
 
 from pipeline.tables.declare import dy
+from pipeline.tables.display import find_number_form
 from pipeline.tables.schemas import ABOUT, STUDY, TABLES
 from pipeline.tables.views import VIEWS
 from warehouse.store.code import code_version
@@ -37,12 +38,14 @@ def _meaning(schema: type[dy.Schema]) -> str:
 
 
 def _column_meanings(schema: type[dy.Schema]) -> dict[str, str]:
-    """What the columns of a table mean, each with its unit."""
-    units = {name: (c.metadata or {}).get("unit") for name, c in schema.columns().items()}
-    return {
-        name: f"{column.description} [{units[name]}]" if units[name] else str(column.description)
-        for name, column in schema.columns().items()
-    }
+    """Return what the columns of a table mean, each with its unit."""
+    meanings = {}
+    for name, column in schema.columns().items():
+        unit = (column.metadata or {}).get("unit")
+        if unit is None and column.dtype.is_numeric():
+            unit = find_number_form(name).unit
+        meanings[name] = f"{column.description} [{unit}]" if unit else str(column.description)
+    return meanings
 
 
 MEANINGS: Final = {
