@@ -2,7 +2,7 @@
 
 The public library; docs/library.md has an example of each. Nothing else is public.
 
-- `fit`, `Curve`, `Fit`, `Estimate`: curves from speeds and forces, power and speed.
+- `fit`, `Curve`, `Fit`, `Estimate`, `FitWarning`: curves from speeds and forces, power and speed.
 - `open_data`, `DataFolder`, `compare_registers`: the tables of a rebuild as Polars frames.
 - `methods`, `method`, `apply_method`, `Applied`: methods, and one tow under a method.
 - `HerijkError`: what all of them raise where something is missing or wrong.
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
-    from herijk.library.curves import Curve, Estimate, Fit, fit
+    from herijk.library.curves import Curve, Estimate, Fit, FitWarning, fit
     from herijk.library.data import DataFolder, compare_registers, open_data
     from herijk.library.methods import Applied, apply_method, method, methods
     from pipeline.errors import HerijkError
@@ -25,6 +25,7 @@ __all__ = [
     "DataFolder",
     "Estimate",
     "Fit",
+    "FitWarning",
     "HerijkError",
     "apply_method",
     "compare_registers",
@@ -35,7 +36,7 @@ __all__ = [
 ]
 
 _HOMES: Final = {
-    "herijk.library.curves": {"Curve", "Estimate", "Fit", "fit"},
+    "herijk.library.curves": {"Curve", "Estimate", "Fit", "FitWarning", "fit"},
     "herijk.library.data": {"DataFolder", "compare_registers", "open_data"},
     "herijk.library.methods": {"Applied", "apply_method", "method", "methods"},
     "pipeline.errors": {"HerijkError"},

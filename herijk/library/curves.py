@@ -5,8 +5,9 @@ The formulas are those of the register (`pipeline.curve`); here they take plain 
 
 from __future__ import annotations  # the reference shows types by their names
 
+import warnings
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,17 @@ from pipeline.errors import HerijkError
 from pipeline.races.power import speed_at_power
 
 FloatArray = NDArray[np.float64]
+
+MAX_RESIDUAL_RATIO: Final = 0.1
+"""A point that lies farther from its curve, as a share of it, does not follow a hyperbola: the run
+points of a tow test scatter by 1 to 3 % (inferred)."""
+
+MIN_BEND: Final = 1e-9
+"""(v/B)^2 at the highest speed below which a curve is flat but for rounding."""
+
+
+class FitWarning(UserWarning):
+    """Points that a hyperbola does not describe, or that show no bend and so no B."""
 
 
 class Estimate(NamedTuple):
@@ -137,7 +149,10 @@ class Fit:
 def fit(
     speed_m_s: ArrayLike, force_n: ArrayLike | None = None, *, cw_kg_m: ArrayLike | None = None
 ) -> Fit:
-    """A curve through speeds and forces, or through speeds and coefficients.
+    """Fit a curve through speeds and forces, or through speeds and coefficients.
+
+    Warns by `FitWarning` where a point lies more than 10 % from the curve, as a run at rest does,
+    and where the points show no bend: the curve then has no B.
 
     Args:
         speed_m_s: speeds through water, shape (n,), positive.
@@ -166,7 +181,28 @@ def fit(
     fitted = hyperbola.fit(points)
     if not fitted.converged[0]:
         raise HerijkError("the points determine no curve; at least two different speeds are needed")
-    return Fit(Curve(float(fitted.a_kg_m[0]), float(fitted.s_s2_m2[0])), points, fitted)
+    curve = Curve(float(fitted.a_kg_m[0]), float(fitted.s_s2_m2[0]))
+    if abs(curve.s_s2_m2) * speed.max() ** 2 < MIN_BEND:
+        curve = Curve(curve.a_kg_m, 0.0)
+    _warn_of_misfit(curve, points)
+    return Fit(curve, points, fitted)
+
+
+def _warn_of_misfit(curve: Curve, points: hyperbola.Points) -> None:
+    """Warn where points do not follow a hyperbola, or have no bend."""
+    speed, cw = points.speed_m_s[0], points.cw_kg_m[0]
+    residual_ratio = np.abs(cw / curve.cw_kg_m(speed) - 1.0)
+    worst = int(residual_ratio.argmax())
+    if residual_ratio[worst] > MAX_RESIDUAL_RATIO:
+        warnings.warn(
+            f"the point at {speed[worst]:g} m/s lies {residual_ratio[worst]:.0%} from the curve: "
+            "these points do not follow a hyperbola. Leave out runs at rest and speeds far from "
+            "the others",
+            FitWarning,
+            stacklevel=3,
+        )
+    if curve.b_m_s is None:
+        warnings.warn("the points show no bend: the curve has no B", FitWarning, stacklevel=3)
 
 
 def _none_below_zero(numbers: ArrayLike) -> FloatArray:

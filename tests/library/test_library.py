@@ -29,10 +29,26 @@ def test_everything_promised_is_there():
 def test_a_real_drag_without_a_bend_has_no_b():
     rows = read_table("unh_rm2_tare_drag.csv")
     speed = [float(row["tow_speed_m_per_s"]) for row in rows]
-    found = herijk.fit(speed, [float(row["tare_drag_N"]) for row in rows])
+    with pytest.warns(herijk.FitWarning, match="no bend"):
+        found = herijk.fit(speed, [float(row["tare_drag_N"]) for row in rows])
     assert not found.b_is_determined
     assert found.b.hi is None
     assert found.cw(0.8).lo < found.cw(0.8).value < found.cw(0.8).hi
+
+
+def test_a_run_at_rest_among_the_points_is_warned_of():
+    speed, force = [0.0016, 0.69, 0.89, 0.99], [0.840, 2.354, 3.484, 4.821]
+    with (
+        pytest.warns(herijk.FitWarning, match=r"at 0.99 m/s lies 62% from the curve"),
+        pytest.warns(herijk.FitWarning, match="no bend"),
+    ):
+        herijk.fit(speed, force)
+
+
+@pytest.mark.filterwarnings("ignore:the points show no bend")
+def test_a_drag_that_grows_with_speed_squared_has_no_b():
+    speed = [4.5, 5.0, 5.5, 6.0]
+    assert herijk.fit(speed, [12.74 * v * v for v in speed]).b.value is None
 
 
 def test_a_curve_shows_the_numbers_that_people_know():
