@@ -7,8 +7,10 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
+import numpy as np
 import polars as pl
 
+from pipeline.arrays import BoolArray
 from pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import Sentence, say
@@ -29,7 +31,7 @@ from warehouse.archive.columns import (
     split_header,
     split_line,
 )
-from warehouse.archive.faults import Fault, Lost, fault_from, say_at_line
+from warehouse.archive.faults import Fault, fault_from, say_at_line
 from warehouse.archive.files import (
     REFUSED_SUFFIXES,
     TEXT_SUFFIXES,
@@ -63,6 +65,8 @@ _DUTCH_DATE: Final = r"^([0-9]{1,2}-[0-9]{1,2}-[0-9]{4})( [0-9]{1,2}:[0-9]{2}(:[
 _SPREADSHEET_ERROR: Final = r"^#(N/[AB]|[A-Z]+(/0)?[!?])$"
 """As #N/A or #REF!, and as Dutch spreadsheets say it: #N/B, #VERW!"""
 _FORMULA: Final = r"^="
+_VALUE: Final = "{} value"
+"""Name of the column with the values of a column of text, while a list is read."""
 
 
 class Table(NamedTuple):
@@ -333,23 +337,23 @@ def _parse_rows(
     rows.drop(is_fragment, text, lost="row", cells=pl.format("'{}'", filled))
     is_text = _is_text(file)
     mark = _find_decimal_mark(rows.frame, places, is_text)
-    is_lost, values = _note_empty(rows, needed, places), {}
-    for column in kind.columns:
-        value = _parse_cell(kind, column.key, places)
-        is_told = pl.lit(value=False)
-        for is_wrong, said, code, facts in _list_checks(kind, column, places, value, mark, is_text):
-            wrong = is_wrong.fill_null(value=False) & ~is_told
-            is_told |= wrong
-            is_spare = column.key in kind.spare
-            lost: Lost | None = "cell" if is_spare else None
-            rows.note(wrong, said, code, lost, asks_word=said in ASKED_WORDS, **facts)
-            is_lost = is_lost if is_spare else is_lost | wrong
-        values[column.key] = pl.when(~is_told).then(value)
-    schema = make_empty_rows(kind).schema
-    rows.frame, rows.listed = (
-        frame.with_columns(**values).select(schema.names()).cast(schema)
-        for frame in (rows.frame.filter(~is_lost), every)
+    is_kept = every["line"].is_in(rows.frame["line"].implode()).to_numpy()
+    every = every.with_columns(
+        _parse_cell(kind, key, places).alias(_VALUE.format(key)) for key in keys
     )
+    rows.frame = every.filter(is_kept)
+    is_lost = _note_empty(rows, every, needed, places)
+    values = {}
+    for column in kind.columns:
+        checks = _list_checks(kind, column, places, mark, is_text)
+        is_wrong_cell = _note_wrong_cells(rows, every, is_kept, column.key, checks)
+        if column.key not in kind.spare:
+            is_lost |= is_wrong_cell
+        value = pl.col(_VALUE.format(column.key))
+        values[column.key] = pl.when(~pl.lit(pl.Series(is_wrong_cell))).then(value)
+    schema = make_empty_rows(kind).schema
+    rows.listed = every.with_columns(**values).select(schema.names()).cast(schema)
+    rows.frame = rows.listed.filter(is_kept & ~is_lost)
     return rows
 
 
@@ -412,29 +416,78 @@ def _find_decimal_mark(
     return "," if any(has_comma.row(0)) else "." if is_text else ""
 
 
-def _note_empty(rows: Rows, needed: list[str], places: Mapping[str, FoundColumn]) -> pl.Expr:
-    """Note which needed cells of each row are empty; return which rows these are."""
+def _note_empty(
+    rows: Rows, every: pl.DataFrame, needed: list[str], places: Mapping[str, FoundColumn]
+) -> BoolArray:
+    """Note which needed cells are empty; return in which of all rows any is."""
     names = [pl.when(pl.col(key).is_null()).then(pl.lit(places[key].header)) for key in needed]
     empty = pl.concat_str(names, separator="', '", ignore_nulls=True)
     is_empty = pl.any_horizontal(pl.col(needed).is_null())
     rows.note(is_empty, say("column '{column}' is empty."), column=empty)
-    return is_empty
+    return np.array(every.select(is_empty).to_series(), bool)
 
 
-Check = tuple[pl.Expr, str, str | None, dict[str, Any]]
-"""Which rows are wrong, the sentence, its reason code, and what is filled in."""
+class Check(NamedTuple):
+    """What can be wrong with the cells of a column.
+
+    Attributes:
+        is_wrong: which rows.
+        sentence: what is said of each.
+        facts: what is filled in.
+        code: the reason code; None for that of the list.
+    """
+
+    is_wrong: pl.Expr
+    sentence: str
+    facts: dict[str, Any]
+    code: str | None = None
+
+
+def _note_wrong_cells(
+    rows: Rows, every: pl.DataFrame, is_kept: BoolArray, key: str, checks: Sequence[Check]
+) -> BoolArray:
+    """Note the cells of a column that are wrong, each by the first check that says so.
+
+    Args:
+        rows: the rows whose faults are noted.
+        every: all rows of the list.
+        is_kept: which of these `rows` has.
+        key: of the column.
+        checks: what can be wrong, in order.
+
+    Returns:
+        Which of all rows have a wrong cell here.
+    """
+    is_told = np.zeros(every.height, bool)
+    found = every.select(
+        check.is_wrong.fill_null(value=False).alias(str(place))
+        for place, check in enumerate(checks)
+    )
+    for check, is_wrong in zip(checks, found.iter_columns(), strict=True):
+        is_new = is_wrong.to_numpy() & ~is_told
+        is_told |= is_new
+        if (is_new & is_kept).any():
+            rows.note(
+                pl.lit(pl.Series(is_new[is_kept])),
+                check.sentence,
+                check.code,
+                lost="cell" if key in rows.kind.spare else None,
+                asks_word=check.sentence in ASKED_WORDS,
+                **check.facts,
+            )
+    return is_told
 
 
 def _list_checks(
     kind: ListKind,
     column: Column,
     places: Mapping[str, FoundColumn],
-    value: pl.Expr,
     mark: str,
     is_text: bool,
 ) -> list[Check]:
     """Return what can be wrong with the cells of a column."""
-    text, declared = pl.col(column.key), find_declared_column(kind, column.key)
+    text, value = pl.col(column.key), pl.col(_VALUE.format(column.key))
+    declared = find_declared_column(kind, column.key)
     place = places.get(column.key, FoundColumn(-1, column.header, Scale()))
     named: dict[str, Any] = {"column": place.header, "cell": text}
     if column.key == REMARK:
@@ -449,17 +502,17 @@ def _list_checks(
         "them, and fill in each."
     )
     checks: list[Check] = [
-        (text == MERGED, merged, None, named),
-        (text.str.contains(_SPREADSHEET_ERROR), error, None, named),
-        (text.str.contains(_FORMULA), formula, None, named),
+        Check(text == MERGED, merged, named),
+        Check(text.str.contains(_SPREADSHEET_ERROR), error, named),
+        Check(text.str.contains(_FORMULA), formula, named),
     ]
     if declared is None:
         return checks
     is_unread = text.is_not_null() & value.is_null()
-    checks.append((is_unread, _describe_wrong_cell(column.key, declared.dtype), None, named))
+    checks.append(Check(is_unread, _describe_wrong_cell(column.key, declared.dtype), named))
     if _is_number(kind, column.key):
         is_double, said = _find_double_numbers(text, mark, is_text)
-        checks.append((is_double, said, "ambiguous_number", named | {"mark": mark}))
+        checks.append(Check(is_double, said, named | {"mark": mark}, "ambiguous_number"))
     if declared.dtype.is_numeric() and column.key != "run":
         lowest, highest = limits(kind.table, column.key)
         low = -float("inf") if lowest is None else lowest
@@ -467,7 +520,7 @@ def _list_checks(
         said = say("column '{column}' is {cell}; {low:g} to {high:g} can be right.")
         of_unit = place.scale.divided_by / place.scale.times
         shown = named | {"low": low * of_unit, "high": high * of_unit}
-        checks.append((~value.is_between(low, high), said, None, shown))
+        checks.append(Check(~value.is_between(low, high), said, shown))
     return checks
 
 

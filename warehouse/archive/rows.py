@@ -53,14 +53,14 @@ class Rows:
         **facts: Any,
     ) -> None:
         """Set rows aside; the arguments are those of `note`."""
-        self.note(is_wrong, text, code, lost, ask=ask, **facts)
-        self.frame = self.frame.filter(~is_wrong.fill_null(value=False))
+        if self.note(is_wrong, text, code, lost, ask=ask, **facts):
+            self.frame = self.frame.filter(~is_wrong.fill_null(value=False))
 
     def empty(self, key: str, is_wrong: pl.Expr, text: str, **facts: Any) -> None:
         """Empty cells that a row can do without."""
-        self.note(is_wrong, text, None, "cell", **facts)
-        sound = ~is_wrong.fill_null(value=False)
-        self.frame = self.frame.with_columns(pl.when(sound).then(key).alias(key))
+        if self.note(is_wrong, text, None, "cell", **facts):
+            sound = ~is_wrong.fill_null(value=False)
+            self.frame = self.frame.with_columns(pl.when(sound).then(key).alias(key))
 
     def note(
         self,
@@ -71,8 +71,8 @@ class Rows:
         asks_word: bool = False,
         ask: Sequence[str] = (),
         **facts: Any,
-    ) -> None:
-        """Add a fault for rows.
+    ) -> int:
+        """Add a fault for rows; return for how many.
 
         Args:
             is_wrong: which rows; what is not known is not wrong.
@@ -84,8 +84,10 @@ class Rows:
             facts: what is filled in: a value, or an expression of the rows.
         """
         of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
-        known = self.frame.select("path", "sheet", "line", "about", _wrong=is_wrong, **of_rows)
-        for row in known.filter("_wrong").iter_rows(named=True):
+        place_columns = ("path", "sheet", "line", "about")
+        known = self.frame.lazy().select(*place_columns, _wrong=is_wrong, **of_rows)
+        wrong_rows = known.filter("_wrong").collect()
+        for row in wrong_rows.iter_rows(named=True):
             filled = {name[1:]: row[name] for name in of_rows}
             short = {
                 name: shorten(value) if isinstance(value, str) and name != "other" else value
@@ -107,6 +109,7 @@ class Rows:
             self.faults.append(fault)
             if row["about"]:
                 self.lost.setdefault(row["about"], fault)
+        return wrong_rows.height
 
     def drop_copies(self, per_file: bool = False) -> None:
         """Keep the first of rows with equal values: a list can be there twice, as .csv and .xlsx.
@@ -161,11 +164,11 @@ class Rows:
 
     def as_table(self, table: type[dy.Schema]) -> pl.DataFrame:
         """Return the rows as a table; the year of a list was not held against its limits yet."""
+        if self.frame.is_empty():
+            return table.create_empty()
         low, high = limits(ListedTows, "season")
-        text, season = (
-            say("the year is {cell}; {low:g} to {high:g} can be right."),
-            pl.col("season"),
-        )
+        text = say("the year is {cell}; {low:g} to {high:g} can be right.")
+        season = pl.col("season")
         self.drop(~season.is_between(low, high), text, cell=season, low=low, high=high)
         return table.validate(self.frame.select(table.column_names()), cast=True)
 
