@@ -105,7 +105,7 @@ def log_progress(tasks: list[pl.DataFrame], n_done: int) -> None:
 @dg.asset(code_version=code_hash(*READS_WITH))
 @incremental(code=READS_WITH)
 def blocks(folders: Folders, samples: pl.DataFrame) -> pl.DataFrame:
-    """Sums over each second of each run of every tow that can be used."""
+    """Return the sums over each second of each run of every tow that can be used."""
     return lake.all_blocks(folders.store, samples)
 
 
@@ -151,7 +151,7 @@ def archive(
 @dg.asset
 @incremental(may_fail=True)
 def trace_seconds(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
-    """The traces of all runs of sound tows."""
+    """Return the traces of all runs of sound tows."""
     columns = list(dict.fromkeys(("tow_id", *PLACE, *SUMS)))
     of_sound_tows = blocks.select(columns).join(
         tows, on="tow_id", how="semi", maintain_order="left"

@@ -92,7 +92,7 @@ def boats_stayed_within_their_intervals(store: Store, _: Settings) -> Found:
 
 
 def editions_can_be_made_again(store: Store, _: Settings) -> Found:
-    """Published editions are what they were, and archive and code of today give them again.
+    """Check that editions are what they were, and that archive and code of today give them again.
 
     A file of the archive may be mended after publication, so only a changed edition is an error.
     """

@@ -11,7 +11,7 @@ from pipeline.consistency.observed import observe_trusted, of_trusted
 @dg.asset
 @incremental()
 def differences_that_matter(folders: Folders) -> pl.DataFrame:
-    """The spread between boats from which a type is not equal: what `beheer.toml` says."""
+    """Return the spread between boats from which a type is not equal: what `beheer.toml` says."""
     settings = folders.settings
     return pl.DataFrame(
         {
@@ -73,5 +73,5 @@ def reproducibility(
     boats: pl.DataFrame,
     run_points: pl.DataFrame,
 ) -> pl.DataFrame:
-    """Standard deviation of one tow from repeat pairs, per method and era."""
+    """Return the standard deviation of one tow from repeat pairs, per method and era."""
     return repeats.reproducibility(repeat_pairs, observe_trusted(curves, tows, boats, run_points))

@@ -75,7 +75,7 @@ def studies(
     blocks: pl.DataFrame,
     tow_instruments: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
-    """The ladder from the first method to each other, and the studies of its options."""
+    """Return the ladder from the first method to each other, and the studies of its options."""
     runs = stack_blocks(blocks, with_hand_windows(tow_runs, hand_windows))
     cache = RunCache()
     applied = read_methods(folders, methods)
@@ -100,5 +100,5 @@ def season_changes(folders: Folders, methods: pl.DataFrame, curves: pl.DataFrame
 def print_reproduction(
     printed_registers: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
 ) -> pl.DataFrame:
-    """Printed A, B and Cw of each tow next to those of each method."""
+    """Return the printed A, B and Cw of each tow next to those of each method."""
     return summaries.print_reproduction(printed_registers, curves, tows)

@@ -37,7 +37,7 @@ def site(folders: Folders) -> pl.DataFrame:
 
 @dg.asset(deps=[warehouse_database, site, "samples", "unforeseen", "quarantine"])
 def check_results(folders: Folders) -> dg.MaterializeResult:
-    """What every check of the tables finds; Dagster's checks and the report show it."""
+    """Make every check of the tables; Dagster's checks and the report show the outcome."""
     frame = evaluate_checks(folders.store, folders.settings)
     failed = frame.filter(pl.col("number") > 0)
     return dg.MaterializeResult(value=frame, metadata={"failed": failed["check"].to_list()})
@@ -45,7 +45,7 @@ def check_results(folders: Folders) -> dg.MaterializeResult:
 
 @dg.asset(deps=[warehouse_database])
 def report(folders: Folders, check_results: pl.DataFrame) -> dg.MaterializeResult:
-    """What changed since the last report: a page, JSON, and its headlines."""
+    """Return what changed since the last report: a page, JSON, and its headlines."""
     news = write_report(folders.store, check_results, dt.datetime.now().astimezone())
     return dg.MaterializeResult(
         value=pl.DataFrame({"headline": news.headlines}, schema={"headline": pl.String}),

@@ -32,7 +32,7 @@ def registers(
     published_register_changes: pl.DataFrame,
     published_lineage: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
-    """A draft per method with its history, lineage and boats that are due, beside the editions."""
+    """Draft a register per method, with history, lineage and due boats, beside the editions."""
     published = {
         "register": published_register,
         "register_history": published_register_history,
@@ -75,7 +75,7 @@ def registers_of_years(
     listed_races: pl.DataFrame,
     ensemble: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
-    """The register of every past year as it was published and under each method; and its races."""
+    """Return the register of every past year, as published and by each method, and its races."""
     applied = read_methods(folders, methods)
     seasons = tows["season"].unique().sort().to_list()
     lines = years.register_years(register_history, correction_steps, applied, seasons)

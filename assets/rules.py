@@ -17,7 +17,7 @@ FACTS: Final = ("title", "title_en", "interval", "content_hash", "definition")
 @dg.asset
 @incremental()
 def applied_methods(folders: Folders) -> pl.DataFrame:
-    """The methods to apply, in order: the others are compared with the first."""
+    """Return the methods to apply, in order: the others are compared with the first."""
     rows = []
     for method in folders.get_methods():
         row = {"method": method.name, "rules": f"{method.validity} {method.interval}"}
@@ -36,7 +36,7 @@ def read_methods(folders: Folders, table: pl.DataFrame) -> list[Method]:
 @dg.asset
 @incremental()
 def methods(applied_methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
-    """The methods that made the tables, in order: those of which no code of ours failed."""
+    """Return the methods that made the tables, in order: those of which no code of ours failed."""
     computed = applied_methods.join(curves, on="method", how="semi", maintain_order="left")
     return computed.select("method", *FACTS)
 
@@ -44,7 +44,7 @@ def methods(applied_methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame
 @dg.asset
 @incremental()
 def decisions(folders: Folders) -> pl.DataFrame:
-    """What people decided about tows, in `besluiten.toml`."""
+    """Return what people decided about tows, in `besluiten.toml`."""
     return decision_table(read_decisions(folders.store.root / FILE_NAME))
 
 
@@ -60,7 +60,7 @@ def decisions(folders: Folders) -> pl.DataFrame:
 )
 @incremental()
 def published(folders: Folders) -> dict[str, pl.DataFrame]:
-    """The published editions: their tables as they lie in their folders."""
+    """Return the published editions: their tables as they lie in their folders."""
     tables = published_tables(folders.store)
     return {
         "editions": tables["editions"],

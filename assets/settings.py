@@ -68,7 +68,7 @@ def applied(data: Path, asked: Sequence[str] = ()) -> list[str]:
 
 
 def read_settings(data: Path) -> Settings:
-    """The settings of a data folder; those above where there is no file.
+    """Read the settings of a data folder; the defaults where there is no file.
 
     Raises:
         MissingKnowledgeError: the file cannot be understood.

@@ -30,7 +30,7 @@ class Say(Protocol):
     """Gives a text in one language, with values filled in."""
 
     def __call__(self, text: str, *in_order: object, **named: object) -> str:
-        """The text, which is marked."""
+        """Return the marked text with the values filled in."""
 
 
 @cache
@@ -79,7 +79,7 @@ class Sentence(str):
     number: int
 
     def spoken(self, language: str) -> str:
-        """The sentence in `en` or `nl`; in English where there is no Dutch."""
+        """Return the sentence in `en` or `nl`; in English where there is no Dutch."""
         if language == "en":
             return str(self)
         known = self.template, self.context, self.plural, self.number
@@ -108,7 +108,7 @@ def _filled(
 
 
 def _in_words(value: object, language: str) -> object:
-    """What is filled in for a value, a number with the decimal mark of the language."""
+    """Return what is filled in for a value, a number with the decimal mark of the language."""
     if isinstance(value, str | Exception):
         return spoken(value, language)
     return _WithComma(value) if DECIMALS[language] == "," and isinstance(value, Real) else value
@@ -130,7 +130,7 @@ def _sentence(
 
 
 def say(template: str, *in_order: object, **named: object) -> Sentence:
-    """The sentence that a template gives with the values filled in.
+    """Return the sentence that a template gives with the values filled in.
 
     What comes from files and libraries is made printable: it goes to terminals and tables.
     """
@@ -140,22 +140,22 @@ def say(template: str, *in_order: object, **named: object) -> Sentence:
 
 
 def headings(*texts: str) -> tuple[Sentence, ...]:
-    """The head of a table, each a text of its own."""
+    """Return the head of a table, each a text of its own."""
     return tuple(map(say, texts))
 
 
 def pgettext(context: str, template: str) -> Sentence:
-    """A text of which the same English has another Dutch elsewhere."""
+    """Return a text whose English has another Dutch elsewhere; the context tells them apart."""
     return _sentence(template, context=context)
 
 
 def ngettext(one: str, many: str, number: int) -> Sentence:
-    """A text about one or about several; `{n}` is how many."""
+    """Return a text about one or about several; `{n}` is how many."""
     return _sentence(one, values={"n": number}, plural=many, number=number)
 
 
 def speaker(language: str) -> Say:
-    """Gives texts in one language."""
+    """Return a function that gives texts in one language."""
     return partial(_said_in, language)
 
 
@@ -167,17 +167,17 @@ def _said_in(language: str, text: str, *in_order: object, **named: object) -> st
 
 
 def tell(template: str, *in_order: object, **named: object) -> str:
-    """A text in the language of this command, with the values filled in, sentences in it too."""
+    """Return a text in the language of this command, values and sentences in it filled in."""
     return _said_in(LANGUAGE.get(), template, *in_order, **named)
 
 
 def number(value: float, form: str) -> str:
-    """A number as the language of this command writes it; `form` as in `format`."""
+    """Return a number as the language of this command writes it; `form` as in `format`."""
     return format(value, form).replace(".", DECIMALS[LANGUAGE.get()])
 
 
 def in_per_cent(probability: float) -> str:
-    """A probability that was counted in draws, which never make it certain."""
+    """Return a probability that was counted in draws, which never make it certain."""
     if probability < 0.01:
         return "<\u00a01\u00a0%"
     return ">\u00a099\u00a0%" if probability > 0.99 else f"{100 * probability:.0f}\u00a0%"
@@ -194,21 +194,21 @@ def _printable(value: object) -> object:
 
 
 def spoken(text: Any, language: str) -> Any:
-    """A sentence or an error in the language asked for; any other text is data, and stays."""
+    """Return a sentence or an error in a language; any other text is data, and stays."""
     if isinstance(text, Exception):
         text = text.args[0] if text.args and isinstance(text.args[0], Sentence) else str(text)
     return text.spoken(language) if isinstance(text, Sentence) else text
 
 
 def innermost(text: str) -> str:
-    """What a sentence says of its line: the sentence within `Line 3: ...`."""
+    """Return what a sentence says of its line: the sentence within `Line 3: ...`."""
     while isinstance(text, Sentence) and isinstance(text.values.get("what"), Sentence):
         text = text.values["what"]
     return text
 
 
 def cause_of(text: str) -> str:
-    """What sentences of one cause share: the same words about the same column.
+    """Return what sentences of one cause share: the same words about the same column.
 
     What differs from fault to fault is left open: `column 'klasse' is '…'; H or D is expected.`
     """
@@ -224,7 +224,7 @@ def cause_of(text: str) -> str:
 
 @cache
 def _parts(template: str) -> tuple[tuple[str, str | None], ...]:
-    """The literals of a template, each with the name of the value that follows it."""
+    """Return the literals of a template, each with the name of the value that follows it."""
     return tuple((literal, name) for literal, name, _, _ in Formatter().parse(template))
 
 

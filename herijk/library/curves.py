@@ -52,7 +52,7 @@ class Curve:
 
     @classmethod
     def of(cls, a_kg_m: float, b_m_s: float | None) -> Self:
-        """The curve of an A and a B; no B is a flat curve.
+        """Return the curve of an A and a B; no B is a flat curve.
 
         Raises:
             HerijkError: A or B is not a positive number.
@@ -65,7 +65,7 @@ class Curve:
         return cls(a_kg_m, 0.0 if b_m_s is None else float(hyperbola.s_of_b(b_m_s)))
 
     def __repr__(self) -> str:
-        """The curve by the numbers that people know."""
+        """Return the curve by the numbers that people know."""
         return f"Curve(a_kg_m={self.a_kg_m}, b_m_s={self.b_m_s})"
 
     @property
@@ -91,7 +91,7 @@ class Curve:
         return np.asarray(self.cw_kg_m(speed) * speed**3, dtype=np.float64)
 
     def speed_m_s(self, power_w: ArrayLike) -> FloatArray:
-        """The speed at which the whole crew gives a power; inverse of `power_w`.
+        """Return the speed at which the whole crew gives a power; inverse of `power_w`.
 
         Raises:
             HerijkError: a power is negative or not a number.
@@ -118,7 +118,7 @@ class Fit:
     _fitted: hyperbola.Curves
 
     def __repr__(self) -> str:
-        """The curve, B with its interval, and how many points."""
+        """Return the curve, B with its interval, and how many points."""
         return f"Fit(curve={self.curve}, b={self.b}, points={self.points.speed_m_s.size})"
 
     @property

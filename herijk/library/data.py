@@ -44,7 +44,7 @@ UNION ALL SELECT view_name, comment FROM duckdb_views() WHERE NOT internal ORDER
         return self.sql(f'FROM "{name}"')
 
     def register(self, edition: str) -> pl.DataFrame:
-        """The lines of one edition; a draft is called `concept-<method>`.
+        """Return the lines of one edition; a draft is called `concept-<method>`.
 
         Raises:
             MissingKnowledgeError: there is no such edition.
@@ -57,7 +57,7 @@ UNION ALL SELECT view_name, comment FROM duckdb_views() WHERE NOT internal ORDER
         return chosen
 
     def samples(self, tow_id: str) -> pl.DataFrame:
-        """The samples of one tow as `apply_method` takes them, calibrated by nothing yet.
+        """Return the samples of one tow as `apply_method` takes them, calibrated by nothing yet.
 
         Raises:
             MissingKnowledgeError: there is no such tow.
@@ -71,13 +71,13 @@ UNION ALL SELECT view_name, comment FROM duckdb_views() WHERE NOT internal ORDER
         return read_parquet(self._store.samples_path(season, key))
 
     def sql(self, query: str) -> pl.DataFrame:
-        """The result of an SQL query; nothing can be written."""
+        """Return the result of an SQL query; nothing can be written."""
         with open_database(self._database) as connection:
             return pl.DataFrame(connection.sql(query).pl())
 
 
 def open_data(folder: str | Path) -> DataFolder:
-    """The tables of a data folder that `herijk rebuild` made.
+    """Return the tables of a data folder that `herijk rebuild` made.
 
     Raises:
         MissingKnowledgeError: nothing was rebuilt there.
@@ -86,7 +86,7 @@ def open_data(folder: str | Path) -> DataFolder:
 
 
 def compare_registers(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """What changes from one register to another, per boat and crew.
+    """Return what changes from one register to another, per boat and crew.
 
     Args:
         old, new: rows of `DataFolder.register`, each of one edition.

@@ -55,7 +55,7 @@ def methods() -> tuple[str, ...]:
 
 
 def method(name_or_file: str | Path) -> Method:
-    """A method that ships, by name, or one from a TOML file, by path.
+    """Return a method that ships, by name, or one from a TOML file, by path.
 
     Raises:
         HerijkError: there is no such method, or the file has an error, with its line.
@@ -72,7 +72,7 @@ def method(name_or_file: str | Path) -> Method:
 def apply_method(
     applied: Method, samples: pl.DataFrame, tow: Mapping[str, Any], sample_rate_hz: int
 ) -> Applied:
-    """The curve of one tow under a method, from its samples.
+    """Return the curve of one tow under a method, from its samples.
 
     A method that estimates something from the whole archive (`rebased`: log factors, the wind
     coefficient) knows this tow alone, and says less than a rebuild would.
@@ -111,7 +111,7 @@ def apply_method(
 
 
 def _runs(numbers: pl.Series) -> pl.DataFrame:
-    """Runs as the federation tows them: the first half out and the second back."""
+    """Return the runs as the federation tows them: the first half out and the second back."""
     half = RUNS_PER_FILE // 2
     place = (pl.col("run") - 1) % half
     return pl.DataFrame({"run": numbers.cast(pl.Int8)}).with_columns(

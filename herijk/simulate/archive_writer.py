@@ -61,12 +61,12 @@ class Spelling:
     own_names: bool = False
 
     def number(self, value: float, decimals: int) -> str:
-        """A number as text."""
+        """Return a number as text."""
         text = f"{value:.{decimals}f}"
         return text.replace(".", ",") if self.decimal_comma else text
 
     def date(self, day: dt.date) -> str:
-        """A date as text."""
+        """Return a date as text."""
         return day.isoformat() if self.iso_dates else day.strftime("%d-%m-%Y")
 
 
@@ -94,7 +94,7 @@ Row: TypeAlias = dict[str, str]
 
 
 def spelling_of(season: int) -> Spelling:
-    """The spelling of a season's files."""
+    """Return the spelling of a season's files."""
     return SPELLINGS[(season - FIRST_SEASON) % len(SPELLINGS)]
 
 
@@ -164,7 +164,7 @@ def _write_all_samples(
     on_tow: Callable[[int, int], None] | None,
     workers: int,
 ) -> tuple[dict[str, object], Curves]:
-    """The truth of every tow, and what was printed of it."""
+    """Write the samples of all tows; return the truth of each, and what was printed of it."""
     for season in world.settings.seasons:
         _samples_folder(directory, season).mkdir(parents=True)
     truth: dict[str, object] = {tow.tow_id: None for tow in world.tows}
@@ -225,7 +225,7 @@ def _write_samples(path: Path, samples: pl.DataFrame, spelling: Spelling, rate_h
 
 
 def _spelled_columns(samples: pl.DataFrame, spelling: Spelling, rate_hz: int) -> list[pl.Expr]:
-    """The samples under the federation's headers, in the units of the spelling."""
+    """Return the samples under the federation's headers, in the units of the spelling."""
     per_m_s = SPEED_UNITS[spelling.speed_unit]
     force = pl.col("force_n") * FORCE_UNITS[spelling.force_unit]
     angle = pl.col("wind_angle_deg")
@@ -253,7 +253,7 @@ OWN_NAMES: Final = {"log1": "snelheid A", "force": "trek"}
 
 
 def _write_papers(directory: Path, world: World) -> None:
-    """What does not depend on samples: the profile, boats, lists and a race."""
+    """Write what does not depend on samples: the profile, boats, lists and a race."""
     seasons = world.settings.seasons
     for folder in ("sloepregister", "sleeplijsten", "wedstrijden"):
         (directory / folder).mkdir(parents=True)
@@ -268,7 +268,7 @@ def _write_papers(directory: Path, world: World) -> None:
 
 
 def _write_registers(directory: Path, world: World, curves: Curves) -> None:
-    """The registers of the middle season and of the last."""
+    """Write the registers of the middle season and of the last."""
     seasons = world.settings.seasons
     for year in sorted({seasons[len(seasons) // 2], seasons[-1]}):
         path = directory / "sloepregister" / f"sloepregister_{year}.csv"
@@ -327,7 +327,7 @@ def _boat_rows(world: World) -> list[Row]:
 
 
 def _list_rows(world: World, season: int) -> list[Row]:
-    """A season's list; what is optional is left out where it is empty for every tow."""
+    """Return the rows of a season's list; a column that is empty for every tow is left out."""
     tows = [tow for tow in world.tows if tow.season == season]
     rows = [_list_row(world, tow) for tow in tows]
     if any(tow.free_thwart or tow.freeboards_m for tow in tows):
@@ -408,7 +408,7 @@ def _race_rows(world: World, season: int) -> list[Row]:
 
 
 def _truth_record(world: World, tow: Tow, runs: tuple[RunTruth, ...]) -> dict[str, object]:
-    """What the archive does not tell about a tow, ready for JSON."""
+    """Return what the archive does not tell about a tow, ready for JSON."""
     truth = tow.truth
     defects = world.settings.defects(tow.season)
     speeds = tow.declared_speed_m_s * CURVE_SPEED_RATIOS

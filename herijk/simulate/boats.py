@@ -147,7 +147,7 @@ def crew_kg(crew_class: str, rowers: int) -> float:
 
 
 def loaded_hull(boat: Boat, on_board_kg: float, weight_kg: float, condition: float) -> Hull:
-    """The hull of a boat with its crew.
+    """Return the hull of a boat with its crew.
 
     Args:
         boat: the boat.

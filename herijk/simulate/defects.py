@@ -108,7 +108,7 @@ class Defects:
 
     @classmethod
     def clean(cls, season: int) -> "Defects":
-        """That season's instruments in a world where only the season's log factor needs finding.
+        """Return the instruments of a season in a world where only its log factor needs finding.
 
         Noise, wind, current and disturbed runs stay; what cannot be known from one tow (wander
         between tows, boats that change, askew pulling) is gone.

@@ -136,7 +136,7 @@ def still_air_cw_kg_m(hull: Hull, air: AirCoefficients) -> float:
 def true_cw_kg_m(
     hull: Hull, speed_m_s: Floats, temperature_c: float, air: AirCoefficients
 ) -> Floats:
-    """The coefficient a perfect tow test would find: still water and still air, [kg/m]."""
+    """Return the coefficient a perfect tow test would find: still water and still air, [kg/m]."""
     return water_cw_kg_m(hull, speed_m_s, temperature_c) + still_air_cw_kg_m(hull, air)
 
 

@@ -84,7 +84,7 @@ def read_load_cell(
     air: AirCoefficients,
     streams: TowStreams,
 ) -> Samples:
-    """What the load cell feels: water, air, inertia, and the unrest of tow line and helm."""
+    """Return what the load cell feels: water, air, inertia, and the unrest of tow line and helm."""
     count, step_s = time_s.size, RUN_SECONDS / time_s.size
 
     def at_samples(slow: Floats) -> Floats:
@@ -140,7 +140,7 @@ def read_anemometer(
 
 
 def damage(force: Samples, log1: Samples, defects: Defects, rng: np.random.Generator) -> None:
-    """What files of real instruments have in them, put into one run: zeros, no numbers, a spike."""
+    """Put what files of real instruments hold into one run: zeros, no numbers, a spike."""
     a_second = force.size / RUN_SECONDS
     spike_n = SPIKE_RATIO * float(force.mean())
     for share, channel, value, longest in (

@@ -87,7 +87,7 @@ class TrueRun:
 
 
 def true_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueRun]:
-    """The motion of a tow's six runs, with current and wind, in the order towed."""
+    """Return the motion of a tow's six runs, with current and wind, in the order towed."""
     grid_s = np.arange(-LEAD_S, RUN_SECONDS + 1.0, 1.0 / SLOW_HZ)
     ratios = [*TARGET_SPEED_RATIOS[:-1], FAST_RUN_RATIO] if tow.fast_run else TARGET_SPEED_RATIOS
     stream_m_s, drift_m_s = streams[Component.STREAM].standard_normal(2)
@@ -181,7 +181,7 @@ def _bump(
     rng: np.random.Generator,
     noted: list[Disturbance],
 ) -> Floats:
-    """A raised cosine of height 1 near one end of the run, or nothing; noted in `noted`."""
+    """Return a raised cosine of height 1 near one end of the run, or nothing; noted in `noted`."""
     chance, at_end, length, position = rng.random(4)
     if chance >= share:
         return np.zeros(grid_s.size)
@@ -205,7 +205,7 @@ def _steering_peaks(grid_s: Floats, defects: Defects, rng: np.random.Generator) 
 
 
 def _undisturbed(noted: list[Disturbance]) -> tuple[float, float]:
-    """The part of the run between the disturbances at its start and those at its end."""
+    """Return the part of the run between the disturbances at its start and those at its end."""
     middle_s = RUN_SECONDS / 2
     starts = [d.end_s for d in noted if d.start_s < middle_s]
     ends = [d.start_s for d in noted if d.start_s >= middle_s]
@@ -215,7 +215,7 @@ def _undisturbed(noted: list[Disturbance]) -> tuple[float, float]:
 def _turbulent_wind(
     wind_m_s: float, grid_s: Floats, defects: Defects, streams: TowStreams
 ) -> tuple[Floats, Floats]:
-    """True wind along and across its mean direction."""
+    """Return the true wind along and across its mean direction."""
     rng = streams[Component.WIND]
     step_s = 1.0 / SLOW_HZ
     sd_m_s = wind_m_s * defects.wind_turbulence

@@ -55,7 +55,7 @@ Curves: TypeAlias = Mapping[str, Mapping[Practice, tuple[float, float]]]
 
 
 def printed_register(world: World, year: int, curves: Curves) -> list[RegisterLine]:
-    """The register of that year by the practice of the day, faults included."""
+    """Return the register of that year by the practice of the day, faults included."""
     lines: list[RegisterLine] = []
     newest = _newest_tows(world, year)
     crews = sorted({(tow.boat.index, tow.crew_class) for tow in world.tows})
@@ -79,7 +79,7 @@ def printed_register(world: World, year: int, curves: Curves) -> list[RegisterLi
 
 
 def race(world: World, season: int) -> tuple[dt.date, list[RaceLine]]:
-    """A race of all crews with a valid tow, each at about its own power, by its true curve."""
+    """Return a race of all crews with a valid tow, each at about its power, by its true curve."""
     day = dt.date(season, *RACE_DAY)
     rng = stream(world.settings.seed, Subject.RACE, season)
     lines: list[RaceLine] = []

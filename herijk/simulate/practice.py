@@ -52,7 +52,7 @@ class Practice:
 
 
 def practice_of(season: int, printed_in: int) -> Practice:
-    """The practice by which a register printed a tow; that of 2014 was recomputed in 2015."""
+    """Return by which practice a register printed a tow; 2014 was recomputed in 2015."""
     if season <= 2013 or printed_in <= 2014:
         return Practice()
     return Practice(improved=True, temperature=season >= 2018)
@@ -78,7 +78,7 @@ class _Run:
 def printed_curve(
     samples: pl.DataFrame, runs: Sequence[RunTruth], tow: Tow, practice: Practice
 ) -> tuple[float, float]:
-    """A [kg/m] and B [m/s] by a practice."""
+    """Return A [kg/m] and B [m/s] by a practice."""
     used = [_run(samples, run, practice) for run in runs if _is_used(run, tow)]
     y = _calibration(used) if practice.improved else 1.0
     speed = np.array([y * run.log_m_s.mean() for run in used])
@@ -186,7 +186,7 @@ def _to_reference(tow: Tow, speed: Floats) -> Floats:
 
 
 def _fit(speed: Floats, cw: Floats, highest_b: float) -> tuple[float, float]:
-    """A and B by least squares in Cw, B at most `highest_b`."""
+    """Return A and B by least squares in Cw, B at most `highest_b`."""
 
     def a_of(s: float) -> float:
         shape = 1.0 / (1.0 - s * speed**2)

@@ -68,7 +68,7 @@ class Component(IntEnum):
 
 
 def stream(seed: int, subject: Subject, *address: int) -> np.random.Generator:
-    """The generator that belongs to this address."""
+    """Return the generator that belongs to this address."""
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(subject, *address)))
 
 

@@ -77,7 +77,7 @@ class WorldSettings:
     freeboards_from: int | None = None
 
     def __post_init__(self) -> None:
-        """Checks what a user typed."""
+        """Check what a user typed."""
         if not self.seasons or list(self.seasons) != sorted(set(self.seasons)):
             raise HerijkError("seasons must ascend and be at least one; got {}", self.seasons)
         if self.tows_per_season < 1:
@@ -376,7 +376,7 @@ def _freeboards_m(
 
 
 def _declared_speed_m_s(settings: WorldSettings, boat: Boat, crew_class: str, rowers: int) -> float:
-    """The speed that asks the intended power of the boat as built; kept at later tows."""
+    """Return the speed that asks the intended power of the boat as built; kept at later tows."""
     as_built = loaded_hull(boat, crew_kg(crew_class, rowers), boat.weight_kg, condition=1.0)
     speed = speed_at_power_m_s(
         as_built,

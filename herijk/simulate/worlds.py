@@ -43,7 +43,7 @@ class NamedWorld:
     base: Callable[[int], Defects] = Defects.clean
 
     def defects(self, season: int) -> Defects:
-        """What is wrong in a season."""
+        """Return what is wrong in a season."""
         of_season = self.base(season)
         for seasons, sizes in self.faults.items():
             if season in seasons:
@@ -221,7 +221,7 @@ WORLDS: Final[Mapping[str, NamedWorld]] = {
 
 
 def world_settings(name: str, **size: Any) -> WorldSettings:
-    """Settings of a named world.
+    """Return the settings of a named world.
 
     Args:
         name: a key of `WORLDS`.

@@ -81,7 +81,7 @@ class RunBlocks:
         return np.asarray(later > 0)
 
     def take(self, rows: BoolArray) -> "RunBlocks":
-        """The runs marked in `rows`, shape (runs,)."""
+        """Return the runs marked in `rows`, shape (runs,)."""
         if rows.all():
             return self
         sums = OnDemand(self.sums.keys(), lambda name: self.sums[name][rows])

@@ -34,7 +34,7 @@ BLOCKS_AT_A_TIME: Final = 16
 
 
 def block_sums(samples: pl.DataFrame, sample_rate_hz: float) -> pl.DataFrame:
-    """Adds up the samples of one tow per run and second.
+    """Add up the samples of one tow per run and second.
 
     Args:
         samples: columns of `pipeline.channels.SAMPLE_SCHEMA`, each run contiguous, speeds positive.
@@ -92,7 +92,7 @@ def _seconds(run: NDArray[np.int8], rate_hz: float) -> tuple[NDArray[np.int8], I
 
 
 def _filled(samples: pl.DataFrame) -> pl.DataFrame:
-    """The samples with channels that were not measured as the sums take them."""
+    """Return the samples with channels that were not measured as the sums take them."""
     filled = samples.with_columns(
         value.cast(pl.Float32).alias(name)
         for name, value in _NOT_MEASURED.items()
@@ -114,7 +114,7 @@ def _quantities(
     wind: FloatArray,
     angle_deg: FloatArray,
 ) -> Iterator[FloatArray]:
-    """What is added up of every sample, in the order of `SUM_NAMES`.
+    """Return what is added up of every sample, in the order of `SUM_NAMES`.
 
     The squares that air force is proportional to are signed, in m2/s2: `head` is u|u| with
     u = w cos a, the wind along the course (old rule); `front` and `side` weigh it with |cos a| and

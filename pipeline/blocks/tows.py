@@ -47,7 +47,7 @@ class Tows:
 
     @classmethod
     def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> Self:
-        """The given tows, with their runs among the given ones."""
+        """Return the given tows, with their runs among the given ones."""
         tows = pl.concat([tows, NOT_ALWAYS_KNOWN], how="diagonal_relaxed").sort("tow_id")
         mine = blocks.take(blocks.runs["tow_id"].is_in(tows["tow_id"].implode()).to_numpy())
         index = tows["tow_id"].search_sorted(mine.runs["tow_id"])
@@ -64,7 +64,7 @@ class Tows:
         return self.both_ways(self.selected & (self.blocks["gps_n"].sum(axis=1) > 0))
 
     def of_tow(self, column: str) -> FloatArray:
-        """A number of each tow, shape (tows,); NaN where it is not known."""
+        """Return a number of each tow, shape (tows,); NaN where it is not known."""
         return self._columns[column]
 
     @cached_property
@@ -73,7 +73,7 @@ class Tows:
         return OnDemand(frame.columns, lambda name: frame[name].cast(pl.Float64).to_numpy())
 
     def of_run(self, column: str) -> FloatArray:
-        """A number of each run's tow, shape (runs,); NaN where it is not known."""
+        """Return a number of each run's tow, shape (runs,); NaN where it is not known."""
         return self.of_tow(column)[self.tow]
 
     def measured(self, channel: str) -> BoolArray:
@@ -121,7 +121,7 @@ class Tows:
         return self.blocks.runs["selected"].to_numpy()
 
     def count(self, runs: BoolArray) -> IntArray:
-        """Number of marked runs of each tow, shape (tows,)."""
+        """Return the number of marked runs of each tow, shape (tows,)."""
         return np.bincount(self.tow, runs, self.size).astype(np.int64)
 
     def any(self, runs: BoolArray) -> BoolArray:
@@ -149,7 +149,7 @@ class Tows:
         return np.asarray(np.arange(len(self.tow)) - first, dtype=np.int64)
 
     def by_tow(self, values: FloatArray | BoolArray) -> FloatArray:
-        """A run quantity per tow, shape (tows, most runs of a tow); 0 where there is no run."""
+        """Return a run quantity per tow, shape (tows, most runs of a tow); 0 without a run."""
         place = self.place
         rows = np.zeros((self.size, int(place.max(initial=0)) + 1))
         rows[self.tow, place] = values

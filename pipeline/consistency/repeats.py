@@ -76,7 +76,7 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
-    """New curve at the old declared speed, 0 where that is not below B."""
+    """Return the new curve at the old declared speed, 0 where that is not below B."""
     a, cw, v, old = (
         pairs[name].to_numpy().astype(np.float64)
         for name in ("a_kg_m", "cw_kg_m", "declared_speed_m_s", "declared_speed_m_s_before")
@@ -86,7 +86,7 @@ def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
 
 
 def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.DataFrame:
-    """Standard deviation of one tow from repeat pairs, per method and era of the older tow.
+    """Return the standard deviation of one tow by repeat pairs, per method and era.
 
     A pair differs by sqrt(2) times the deviation of one tow, so s^2 = sum(d^2) / (2 n), with a
     chi-squared interval: s_R of ISO 5725-2 with the season as the laboratory. Two pairs that share

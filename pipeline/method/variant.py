@@ -45,7 +45,7 @@ class Difference:
 
 
 def cut_at(method: Method, seasons: Iterable[int]) -> tuple[SeasonSteps, ...]:
-    """The ranges of a method, cut before each of the given seasons that it covers."""
+    """Return the ranges of a method, cut before each of the given seasons that it covers."""
     whole_first, whole_last = method.ranges[0].first, method.ranges[-1].last
     cuts = {block.first for block in method.ranges}
     firsts = sorted(cuts | {s for s in seasons if whole_first < s <= whole_last})
@@ -59,7 +59,7 @@ def cut_at(method: Method, seasons: Iterable[int]) -> tuple[SeasonSteps, ...]:
 def variant(
     base: Method, name: str, title: str, description: str, ranges: Sequence[SeasonSteps]
 ) -> Method:
-    """A method with the given steps; it extends its base, or what that extends if it is a file.
+    """Return a method with the given steps; it extends its base, or what a base file extends.
 
     Args:
         base: where it comes from; its register rule is kept.
@@ -106,7 +106,7 @@ def differences(method: Method, parent: Method) -> list[Difference]:
 
 
 def variant_text(method: Method) -> str:
-    """A method as the text of a method file that names only what differs from what it extends.
+    """Return the text of a method file that names only what differs from what it extends.
 
     A method that extends none is written out in full. Reading the text gives a method with the
     same content hash and register rule.
@@ -151,7 +151,7 @@ def _options() -> Iterator[tuple[str, str]]:
 
 
 def _together(last: list[Difference], one: Difference) -> list[Difference]:
-    """A difference joined to the one before it, where it goes on in the next season."""
+    """Join a difference to the one before it, where it goes on in the next season."""
     for block in last:
         here = (block.step, block.option, block.last + 1, block.after)
         if here == (one.step, one.option, one.first, one.after):

@@ -7,7 +7,7 @@ from pipeline.method.definition import LAST_SEASON, Method
 
 
 def method_text(method: Method) -> str:
-    """A method as TOML that stands alone: every option of every season, nothing inherited.
+    """Return a method as TOML that stands alone: every option of every season, nothing inherited.
 
     Reading it gives a method with the same content hash and register rule.
     """
@@ -45,7 +45,7 @@ BEGINNING = """
 
 
 def beginning_text(name: str, base: Method) -> str:
-    """A new method file that extends another, with every option of the other as a comment."""
+    """Return the text of a new method file that extends `base`, with its options as comments."""
     head = {
         "name": name,
         "title": name,
@@ -62,7 +62,7 @@ def beginning_text(name: str, base: Method) -> str:
 
 
 def override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]]) -> list[str]:
-    """The lines of an `[[overrides]]` block."""
+    """Return the lines of an `[[overrides]]` block."""
     return ["[[overrides]]", *key_lines({"range": range_of}), *step_lines(steps)]
 
 
@@ -89,5 +89,5 @@ def covered(method: Method) -> str:
 
 
 def range_text(first: int, last: int) -> str:
-    """A season range as method files write it."""
+    """Return a season range as method files write it."""
     return f"{first}:" if last == LAST_SEASON else f"{first}:{last}"

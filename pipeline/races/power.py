@@ -17,7 +17,7 @@ FASTEST_M_S: Final = 20.0
 
 
 def curve_of_lines(lines: pl.DataFrame, suffix: str = "") -> tuple[FloatArray, FloatArray]:
-    """A [kg/m] and s = 1/B^2 [s2/m2] of lines; where B is not determined, s follows from A and Cw.
+    """Return A [kg/m] and s = 1/B^2 [s2/m2] of lines; without a B, s follows from A and Cw.
 
     Args:
         lines: `a_kg_m`, `b_m_s`, `cw_kg_m`, `declared_speed_m_s`, each with the suffix.
@@ -33,7 +33,7 @@ def curve_of_lines(lines: pl.DataFrame, suffix: str = "") -> tuple[FloatArray, F
 
 
 def speed_at_power(a_kg_m: FloatArray, s_s2_m2: FloatArray, power_w: FloatArray) -> FloatArray:
-    """The speed [m/s] at which Cw(v) v^3 is the given power of the whole crew, by bisection."""
+    """Return the speed [m/s] at which Cw(v) v^3 is a power of the whole crew, by bisection."""
     low = np.zeros_like(power_w)
     high = np.where(s_s2_m2 > 0, 1.0 / np.sqrt(np.where(s_s2_m2 > 0, s_s2_m2, 1.0)), FASTEST_M_S)
     for _ in range(BISECTIONS):

@@ -176,7 +176,7 @@ def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame
 
 
 def _fill_curve(a: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """A and s = 1/B^2, with a harmless curve where a register has no line."""
+    """Return A and s = 1/B^2; where a register has no line, those of a harmless curve."""
     has_curve = np.isfinite(a) & np.isfinite(s)
     return np.where(has_curve, a, 1.0), np.where(has_curve, s, 0.0)
 
@@ -202,7 +202,7 @@ def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:
 def _explain(
     pairs: pl.DataFrame, ratios: FloatArray, parts: pl.DataFrame, grounds: pl.DataFrame | None
 ) -> list[str]:
-    """The causes of each change as JSON: known parts, and a factor for what remains."""
+    """Return the causes of each change as JSON: known parts, and a factor for what remains."""
     moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
     parts_of = moved.rows_by_key(LINE, named=True)
     grounds = grounds if grounds is not None else pl.DataFrame(schema=[*LINE, "ground"])

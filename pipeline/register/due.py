@@ -86,7 +86,7 @@ def due_list(
 
 
 def _raced(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
-    """The fastest mean speed through the water of each crew in the year up to a day."""
+    """Return the fastest mean speed through the water of each crew in the year up to a day."""
     day = pl.col("race_date")
     lately = results.filter(day > pl.lit(as_of).dt.offset_by("-1y"), day <= as_of)
     through_water = lately["distance_m"] - lately["stream_m"].fill_null(0.0)

@@ -87,7 +87,7 @@ def default_method(names: Sequence[str]) -> str:
 
 
 def valid_until(tow_date: pl.Expr, rule: RegisterRule) -> pl.Expr:
-    """The last day on which a tow counts: the end of its last calendar year."""
+    """Return the last day on which a tow counts: the end of its last calendar year."""
     year = tow_date.dt.year()
     years = pl.lit(rule.valid_years)
     if rule.six_years_from is not None:
@@ -96,7 +96,7 @@ def valid_until(tow_date: pl.Expr, rule: RegisterRule) -> pl.Expr:
 
 
 def reference_day(tows: pl.DataFrame, results: pl.DataFrame) -> dt.date:
-    """The day on which drafts and the due list judge validity: that of the last tow or race.
+    """Return the day on which drafts and the due list judge validity: of the last tow or race.
 
     Not today: the same archive gives the same tables.
     """

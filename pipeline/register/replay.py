@@ -145,7 +145,7 @@ def _with_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
 
 
 def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """What another register does to races: power, place and podium of every result.
+    """Return what another register does to races: power, place and podium of every result.
 
     Places are among the crews of a class with a power under both registers: a crew that only one
     of them ranks would move all others.

@@ -43,7 +43,7 @@ def ladder(
     links: tuple[pl.DataFrame | None, pl.DataFrame | None] | None = None,
     cache: RunCache | None = None,
 ) -> pl.DataFrame:
-    """The effect of each step on every tow's Cw at the declared speed.
+    """Return the effect of each step on every tow's Cw at the declared speed.
 
     Where an intermediate method gives no curve, its change is counted with the next step that does;
     a tow without a curve under either method has no ladder.
@@ -81,7 +81,7 @@ def _instruments(plan: Plan) -> pl.DataFrame | None:
 
 
 def _mixed(old: Plan, new: Plan, count: int) -> Plan:
-    """The old steps of each tow with the first `count` of `STEP_ORDER` taken from the new."""
+    """Return the old steps of each tow, the first `count` of `STEP_ORDER` being the new."""
     pairs, which = np.unique([old.which, new.which], axis=1, return_inverse=True)
     steps = tuple(
         old.steps[before].model_copy(
@@ -93,7 +93,7 @@ def _mixed(old: Plan, new: Plan, count: int) -> Plan:
 
 
 def _with_factors(rungs: list[Computed]) -> pl.DataFrame:
-    """What each rung makes of every tow, and its factor on the one before."""
+    """Return what each rung makes of every tow, and its factor on the one before."""
     cw = np.stack([one.cw_at_declared for one in rungs])
     sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
     for rung in range(1, len(cw)):

@@ -61,7 +61,7 @@ SPEEDS: Final = {
 def option_effects(
     method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame, cache: RunCache
 ) -> pl.DataFrame:
-    """The effect of each of `CHOICES` over all combinations of the others.
+    """Return the effect of each of `CHOICES` over all combinations of the others.
 
     Args:
         method: the method whose other options hold.
@@ -128,7 +128,7 @@ def option_curves(
 
 
 def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
-    """What each tick and each speed does to a tow, over all combinations of the others.
+    """Return what each tick and each speed does to a tow, over all combinations of the others.
 
     Args:
         curves: rows of `option_curves`.
@@ -157,7 +157,7 @@ def _speeds(plan: Plan) -> Iterator[tuple[str, pl.Series, Plan]]:
 
 
 def _speeds_of(steps: Steps) -> dict[str, Steps]:
-    """The log as it reads, and each way in which a season's method makes a true speed of it."""
+    """Return the log as it reads, and each way in which a method makes a true speed of it."""
     as_read, no_gps = {"speed.correction": "none"}, {"calibration.rule": "none"}
     ways = {AS_READ: chosen(steps, as_read | no_gps)}
     if steps.calibration.rule != "none":
@@ -172,7 +172,7 @@ def _speeds_of(steps: Steps) -> dict[str, Steps]:
 
 
 def chosen(steps: Steps, values: Mapping[str, object]) -> Steps:
-    """The steps of a season with other values of some options."""
+    """Return the steps of a season with other values of some options."""
     for name, value in values.items():
         step, option = name.split(".")
         changed = getattr(steps, step).model_copy(update={option: value})
@@ -193,7 +193,7 @@ def _combinations(
 
 
 def _from_length(computed: Computed) -> curve.Curves:
-    """The curves whose B is hull speed."""
+    """Return the curves whose B is hull speed."""
     hull = hull_speed_m_s(computed.tows.of_tow("waterline_length_m"))
     return curve.fit_given_b(computed.points, hull)
 

@@ -43,7 +43,7 @@ def season_changes(curves: pl.DataFrame, first_method: Method) -> pl.DataFrame:
 def print_reproduction(
     printed_registers: pl.DataFrame, curves: pl.DataFrame, tows: pl.DataFrame
 ) -> pl.DataFrame:
-    """Printed A, B and Cw of each tow next to those of each method, at the printed speed.
+    """Return A, B and Cw of each tow as printed and by each method, at the printed speed.
 
     Args:
         printed_registers: lines of registers as printed; of a tow in several the first counts.

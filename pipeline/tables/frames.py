@@ -12,20 +12,20 @@ S = TypeVar("S", bound=dy.Schema)
 
 
 def dtypes(schema: type[dy.Schema], without: Collection[str] = ()) -> pl.Schema:
-    """The declared dtypes, by column."""
+    """Return the declared dtypes, by column."""
     columns = schema.columns().items()
     return pl.Schema({name: column.dtype for name, column in columns if name not in without})
 
 
 @cache  # asked for per cell of a list; dataframely makes all columns anew each time
 def column_of(schema: type[dy.Schema], name: str) -> dy.Column:
-    """A declared column."""
+    """Return a declared column."""
     return schema.columns()[name]
 
 
 @cache
 def limits(schema: type[dy.Schema], name: str) -> tuple[Any, Any]:
-    """The lowest and highest value that a column declares."""
+    """Return the lowest and highest value that a column declares."""
     column = column_of(schema, name)
     if not isinstance(column, dy.Float64 | dy.Int8 | dy.Int16 | dy.Int32 | dy.Int64):
         raise TypeError(f"{schema.__name__}.{name} has no limits")
@@ -35,6 +35,6 @@ def limits(schema: type[dy.Schema], name: str) -> tuple[Any, Any]:
 def frame_of(
     schema: type[S], rows: Iterable[Mapping[str, Any]] | Iterable[Sequence[Any]]
 ) -> dy.DataFrame[S]:
-    """A frame of rows with the declared columns and dtypes; limits are not checked."""
+    """Return a frame of rows with the declared columns and dtypes; limits are not checked."""
     frame = pl.DataFrame(list(rows), schema=dtypes(schema), orient="row", strict=True)
     return schema.cast(frame)

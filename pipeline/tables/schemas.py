@@ -26,7 +26,7 @@ from pipeline.tables.declare import dy
 
 
 def _declared_in(*modules: ModuleType) -> dict[str, type[dy.Schema]]:
-    """The tables of modules by name: that of the class, in snake case."""
+    """Return the tables of modules by name: that of the class, in snake case."""
     return {
         re.sub("(?<!^)(?=[A-Z])", "_", name).lower(): declared
         for module in modules
@@ -52,18 +52,18 @@ ABOUT: Final = _declared_in(about)
 
 
 def summary_of(schema: type[dy.Schema]) -> str:
-    """What a table holds, in one sentence; its Dutch is among the texts."""
+    """Return what a table holds, in one sentence; its Dutch is among the texts."""
     return cleandoc(schema.__doc__ or "").partition("\n")[0]
 
 
 def ordered(name: str, frame: pl.DataFrame) -> pl.DataFrame:
-    """The declared columns of a table, in order, sorted by its key."""
+    """Return the declared columns of a table, in order, sorted by its key."""
     schema = TABLES[name]
     return frame.select(schema.column_names()).sort(schema.primary_key() or schema.column_names())
 
 
 def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:
-    """The same, checked.
+    """Return the columns of a table in order, checked against its declaration.
 
     Whole numbers get the declared width: counts come wider than they are kept.
 

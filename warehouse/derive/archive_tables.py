@@ -138,7 +138,7 @@ def read_earlier(store: Store, table: str) -> pl.DataFrame:
 
 
 def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
-    """Adds in which steps the readings are written, and whether there is a wind among them."""
+    """Add in which steps the readings are written, and whether there is a wind among them."""
     read = index.select("tow_id", "wind_read", "gps_step_m_s", "force_step_n")
     has_wind = pl.col("wind_measured") & pl.col("wind_read").fill_null(True)
     return (
@@ -157,7 +157,7 @@ def _lost_of_tows(losses: pl.DataFrame) -> pl.DataFrame:
 
 
 def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
-    """Adds the longest time that was left out of a channel of each run."""
+    """Add the longest time that was left out of a channel of each run."""
     lost = (
         losses.filter(lost="seconds")
         .group_by("tow_id", "run", maintain_order=True)
@@ -171,7 +171,7 @@ def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame
 def judged_tows(
     tows: pl.DataFrame, blocks: RunBlocks, contents: pl.DataFrame
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """The tows with their doubts, and the faults of those that the other tows contradict.
+    """Return the tows with their doubts, and the faults of those that other tows contradict.
 
     Args:
         tows: rows of `tows` with `boat_type`.

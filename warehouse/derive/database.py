@@ -32,7 +32,7 @@ STORAGE: Final = "v1.0.0"
 
 
 def _meaning(schema: type[dy.Schema]) -> str:
-    """What a table is, with its key."""
+    """Return what a table is, with its key."""
     key = ", ".join(schema.primary_key())
     return f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
 
@@ -71,12 +71,15 @@ def warehouse_database(
 
 
 def left_wal(path: Path) -> Path:
-    """What another program left beside the database; DuckDB would replay it into a new one."""
+    """Return the path of a write-ahead log that another program left beside the database.
+
+    DuckDB would replay it into a new database.
+    """
     return path.with_name(f"{path.name}.wal")
 
 
 def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
-    """Writes tables, and the views of them, with the meaning of each as a comment.
+    """Write tables, and the views of them, with the meaning of each as a comment.
 
     Args:
         path: the database file; replaced at once when the new one is complete.

@@ -36,7 +36,7 @@ _SENSOR: Final = {
 
 
 def judge(tows: pl.DataFrame, blocks: RunBlocks) -> tuple[Shift, ...]:
-    """What an archive's tows say of each other.
+    """Judge each tow by all others of the archive.
 
     Args:
         tows: rows of `tows` with `boat_type`.
@@ -48,7 +48,7 @@ def judge(tows: pl.DataFrame, blocks: RunBlocks) -> tuple[Shift, ...]:
 
 
 def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:
-    """A fault of every tow that a wrong unit, column or file costs, each once."""
+    """Return a fault for each tow that a wrong unit, column or file costs."""
     sentences = {
         tow: (f"{_SENSOR[shift.quantity]}_not_plausible", _sentence(shift))
         for shift in reversed(shifts)
@@ -64,7 +64,7 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Fa
 
 
 def with_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
-    """The tows with `doubts` and `unusual`: what all others say of them."""
+    """Add to tows the columns `doubts` and `unusual`: what all others say of them."""
 
     def checks(verdict: str, doubted: bool) -> pl.Series:
         shifts = [s for s in judged if (s.clear and s.kind in _SINGLED_OUT) is doubted]
@@ -81,7 +81,7 @@ def with_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
 
 
 def _sentence(shift: Shift) -> str:
-    """What is seen, what it may be, and what to do, for a volunteer."""
+    """Say to a volunteer what is seen, what it may be, and what to do."""
     whose = {
         "tow": say("This tow"),
         "day": say("All {} tows of {}", len(shift.tows), shift.key),

@@ -173,7 +173,7 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
 
 
 def decisions_of(store: Store, edition: Edition) -> pl.DataFrame:
-    """The decisions about tows with which an edition was made; for a draft those of now."""
+    """Return the decisions about tows with which an edition was made; for a draft those of now."""
     name = edition.manifest.edition
     if name not in edition_names(store):
         return decided.decision_table(decided.read_decisions(store.root / decided.FILE_NAME))
@@ -211,7 +211,7 @@ def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame
 
 
 def _edition_row(edition: Edition) -> pl.DataFrame:
-    """What an edition says of itself."""
+    """Return what an edition says of itself."""
     about = edition.manifest.model_dump(include=set(TABLES["editions"].column_names()))
     interval = edition.method and edition.method.interval
     strings = ("previous", "method", "method_hash", "interval")

@@ -32,7 +32,7 @@ SMALLEST: Final = 1e-9
 
 
 def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
-    """A fault of every tow with a run that is another tow's.
+    """Return a fault for each tow with a run that is another tow's.
 
     Args:
         tows: rows of `tows`.
@@ -60,7 +60,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
 
 
 def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
-    """The runs with `content`, a number that runs of one measurement have in common."""
+    """Return the runs with `content`, a number that runs of one measurement have in common."""
     sums = runs.select(CONTENT).to_numpy()
     means = np.nan_to_num(sums[:, 1:] / np.maximum(sums[:, :1], 1.0))
     near = scipy.spatial.cKDTree(np.log(np.maximum(np.abs(means), SMALLEST)))

@@ -35,7 +35,7 @@ def study_tables(
     tow_instruments: pl.DataFrame,
     run_cache: RunCache,
 ) -> dict[str, pl.DataFrame]:
-    """The ladder from the first method to this one, and the studies of its options."""
+    """Return the ladder from the first method to this one, and the studies of its options."""
     known, own = (tows, runs), pl.lit(method.name).alias("method")
     links = tow_instruments.filter(method=method.name)
     effects, ticked, ladders = [], [], []
@@ -62,5 +62,5 @@ def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.Dat
 
 
 def _in_order(first: Method, other: Method) -> tuple[Method, Method]:
-    """The two ends of a ladder: what came first in history is its beginning."""
+    """Return the two ends of a ladder: what came first in history is its beginning."""
     return (other, first) if other.name == FIRST_PUBLISHED else (first, other)

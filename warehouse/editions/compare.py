@@ -87,7 +87,7 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
 
 def _with_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
-    """The old lines; each printed one with the tow of that day and line, where there is one."""
+    """Add to each printed old line the tow of that day and line, where there is one."""
     if old.method is not None or "tows" not in new.tables:
         return old.register
     tows = new.tables["tows"]
@@ -132,7 +132,7 @@ def _method_in_print(store: Store, printed: Edition) -> Method | None:
 
 
 def _printed_parts(printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition) -> pl.DataFrame:
-    """What is known of printed lines before the steps of the method.
+    """Return what is known of printed lines before the steps of the method.
 
     With samples: from print to the tow by the method then in force. Without: the log error of its
     season under the new method, in closed form.

@@ -97,7 +97,7 @@ SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 
 
 def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
-    """The cells of a sheet as they are printed, by header."""
+    """Return the cells of a sheet as they are printed, by header."""
     words = _in_words(frame)
     return pl.DataFrame(
         {
@@ -109,7 +109,7 @@ def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
 
 
 def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str]:
-    """The code of every line: ten letters and digits that follow from all that made it.
+    """Return the code of every line: ten letters and digits that follow from all that made it.
 
     Args:
         frame: lines with the columns of `REGISTER_FIELDS` and `inputs_sha256`.
@@ -123,7 +123,7 @@ def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str
 
 
 def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
-    """A sheet as CSV for a Dutch spreadsheet: BOM, semicolons, decimal commas, no formulas."""
+    """Write a sheet as CSV for Dutch spreadsheets: BOM, semicolons, decimal commas, no formulas."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, delimiter=";", lineterminator="\r\n")
     writer.writerow([field.header for field in fields])

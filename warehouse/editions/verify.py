@@ -150,7 +150,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
 
 @contextmanager
 def _archive_tables(store: Store, archive: Path | None) -> Iterator[Store]:
-    """A data folder with the same editions and decisions, made of the archive's files alone."""
+    """Yield a data folder with the same editions, made of the archive's files alone."""
     if archive is None:
         yield store
         return

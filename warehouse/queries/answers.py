@@ -31,13 +31,13 @@ PAIR: Final = ("from_edition", "to_edition")
 
 
 def newest_edition(editions: list[str], default: str) -> str:
-    """The last published edition; this draft where none is published, or else the last of all."""
+    """Return the last published edition; else the draft `default`, or else the last of all."""
     draft = default if default in editions or not editions else editions[-1]
     return next((e for e in reversed(editions) if not e.startswith(DRAFT)), draft)
 
 
 def current_edition(views: Views) -> str:
-    """The edition that people ask about: the newest that is published, or the best draft."""
+    """Return the edition that people ask about: the newest that is published, or the best draft."""
     published = views.table("editions").sort("valid_from", "published_on", "edition")["edition"]
     drafts = set(views.table("register")["edition"]) - set(published)
     draft = default_method(sorted(drafts)) if drafts else ""
@@ -77,7 +77,7 @@ def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None
 
 
 def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
-    """A published edition, or what publishing a draft would give."""
+    """Return a published edition, or what publishing a draft would give."""
     known = views.table("register")["edition"].unique()
     if name not in known:
         raise no_such_edition(name, known)
@@ -169,7 +169,7 @@ _Tables = Callable[[str], pl.DataFrame]
 
 
 def _behind(views: Views, edition: str) -> _Tables:
-    """The tables behind a register by name: its own of an edition, today's of a draft."""
+    """Return the tables behind a register by name: its own of an edition, today's of a draft."""
     if edition.startswith(DRAFT):
         return views.table
     own = read_edition(views.store, edition).tables
@@ -177,7 +177,7 @@ def _behind(views: Views, edition: str) -> _Tables:
 
 
 def _best_estimates(behind: _Tables) -> pl.DataFrame:
-    """What the whole archive says of each tow, and how far both numbers moved since the last."""
+    """Return the best estimate of each tow, and how far both numbers moved since its last."""
     key = ("method", "tow_id")
     best = behind("curves").select(*key, "^cw_best_.*$", kept=_BEST_TO_MEASURED)
     mine = pl.col("tow_id") == pl.col("rests_on")  # shares of next to nothing are left out
@@ -207,7 +207,7 @@ tows at one speed it gives that of their best estimates."""
 
 
 def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
-    """What is wrong, or may be, with the instruments of a season, by method and season.
+    """Return what is wrong, or may be, with the instruments of a season, by method and season.
 
     Returns:
         Rows of `season_diagnosis` with their `size`, that a person should look at.
@@ -273,7 +273,7 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
 
 
 def _members(views: Views, edition: str) -> pl.DataFrame:
-    """The ensemble of a draft from the lake, of an edition from its folder; else none."""
+    """Return the ensemble of a draft from the lake, of an edition from its folder; else none."""
     if not edition.startswith(DRAFT):
         return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())
     method = edition.removeprefix(DRAFT)

@@ -23,7 +23,7 @@ NOT_YET: Final = "never_towed"
 
 
 def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
-    """Makes a connection answer as of a day: tables `register`, `due_list` and `race_changes`.
+    """Make a connection answer as of a day: tables `register`, `due_list` and `race_changes`.
 
     Args:
         db: the open database, read-only.
@@ -51,7 +51,7 @@ def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
 
 
 def lay_published(db: duckdb.DuckDBPyConnection, store: Store) -> None:
-    """Makes a connection answer with the editions of now, where they are others than it knows."""
+    """Make a connection answer with the editions of now, where they are others than it knows."""
     editions = pl.DataFrame(db.table("editions").pl())["edition"].to_list()
     if set(editions) == set(edition_names(store)):
         return

@@ -89,7 +89,7 @@ class TypesAudit:
 
 
 def audit(store: Store, names: Sequence[str], method: str | None = None) -> BoatAudit | TypesAudit:
-    """The page of a boat, or of one or two types.
+    """Return the page of a boat, or of one or two types.
 
     Args:
         store: where the database lies.

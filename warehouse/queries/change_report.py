@@ -87,12 +87,12 @@ class ChangeReport:
 
 
 def reported_path(store: Store) -> Path:
-    """The folder with the tables of the last report."""
+    """Return the folder with the tables of the last report."""
     return store.root / "report" / "last"
 
 
 def change_report(store: Store) -> ChangeReport:
-    """What changed in the tables since the last report."""
+    """Return what changed in the tables since the last report."""
     return _between(store, _reported_state(store), store.contents(DATABASE_TABLE))
 
 
@@ -102,7 +102,7 @@ def is_reported(store: Store) -> bool:
 
 
 def remember(store: Store) -> None:
-    """Keeps what the next report compares with."""
+    """Keep what the next report compares with."""
     if not is_reported(store):
         with folder_written_beside(reported_path(store)) as beside:
             for name, frame in _today(store).items():
@@ -110,7 +110,7 @@ def remember(store: Store) -> None:
 
 
 def _reported_state(store: Store) -> str | None:
-    """The contents of the database that was reported on; None where nothing was."""
+    """Return the contents of the database that was reported on; None where nothing was."""
     reported = _reported(store, ("about",))
     return None if reported is None else str(reported["about"]["database"][0])
 
@@ -124,7 +124,7 @@ def _reported(store: Store, names: Sequence[str] = NEEDED) -> Tables | None:
 
 
 def _today(store: Store) -> Tables:
-    """What a report compares, of the tables in the lake."""
+    """Return what a report compares, of the tables in the lake."""
     tables = {n: store.read(n) for n in ("boats", "tows", "tow_runs", "hand_windows", "methods")}
     about = {"code_version": code_version(), "database": store.contents(DATABASE_TABLE)}
     is_draft = pl.col("edition").str.starts_with(draft_name(""))
@@ -142,7 +142,7 @@ def _today(store: Store) -> Tables:
 
 @lru_cache(maxsize=1)
 def _between(store: Store, was_state: object, now_state: object) -> ChangeReport:
-    """What changed from one state of the tables to another; kept, as several ask."""
+    """Return what changed from one state of the tables to another; cached, as several ask."""
     now = _today(store)
     was = now if was_state == now_state else _reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
@@ -243,7 +243,7 @@ def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
 
 
 def last_changes(store: Store) -> ChangeReport | None:
-    """What changed since the last report; where nothing did, what the last change was."""
+    """Return what changed since the last report; where nothing did, what the last change was."""
     report = change_report(store)
     if not report.nothing:
         return report

@@ -24,7 +24,7 @@ SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
 
 
 def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Row]:
-    """The valid lines of an edition, of one boat or all, with what their certificates say.
+    """Return the valid lines of an edition, of one boat or all, with what their certificates say.
 
     All of it comes from the edition's own folder; that of a draft from the database.
 
@@ -65,7 +65,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
 
 
 def _lines(views: Views, edition: str) -> pl.DataFrame:
-    """The lines of an edition or draft, with name and type of their boats, and what held before."""
+    """Return the lines of an edition or draft with their boats, and what held before."""
     if not edition.startswith(DRAFT) and edition in edition_names(views.store):
         read = read_edition(views.store, edition)
         lines, previous = read.register, read.manifest.previous
@@ -82,7 +82,7 @@ def _lines(views: Views, edition: str) -> pl.DataFrame:
 
 
 def curve_of(line: Row) -> pl.DataFrame:
-    """The curve that the A and B of a line give: `speed_m_s`, `cw_kg_m` and `power_w` per rower."""
+    """Return the curve of a line: `speed_m_s`, `cw_kg_m` and `power_w` per rower."""
     speed = np.array(SPEEDS) * line["declared_speed_m_s"]
     a, s = curve_of_lines(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))
     resistance = cw(a, s, speed)

@@ -49,7 +49,7 @@ class History:
 
     @classmethod
     def of(cls, store: Store) -> Self:
-        """Reads the lake.
+        """Read the histories from the lake.
 
         Raises:
             MissingKnowledgeError: nothing was rebuilt in this data folder.

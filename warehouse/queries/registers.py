@@ -54,7 +54,7 @@ class DueReport:
 def register_report(
     store: Store, edition: str | None = None, as_of: dt.date | None = None
 ) -> RegisterReport:
-    """The lines of an edition or draft, with the boat's name.
+    """Return the lines of an edition or draft, with the name of each boat.
 
     Args:
         store: the data folder.

@@ -88,7 +88,7 @@ class Scenario:
         return named.select(TYPE_COLUMNS)
 
     def boat_figure(self, fsn_no: str) -> pl.DataFrame:
-        """What the figure of a boat's curves draws: see `curve_figure`, at 13 speeds."""
+        """Return what the figure of a boat's curves draws: see `curve_figure`, at 13 speeds."""
         curves = self.boat_curves(fsn_no).drop_nulls("cw_kg_m")
         runs = self.both(lambda draft: draft.made.run_points)
         return pl.concat(curve_figure(_lines(curves), runs, curves).values(), how="diagonal")

@@ -47,7 +47,7 @@ class Views:
         return self.frame(QUESTIONS[question], *values)
 
     def table(self, name: str) -> pl.DataFrame:
-        """A whole table, in the order in which it was written."""
+        """Return a whole table, in the order in which it was written."""
         return self.frame(f'SELECT * FROM "{name}"')  # noqa: S608
 
     @cached_property
@@ -63,7 +63,7 @@ class Views:
         return dict(self.ask("comments").rows())
 
     def about(self) -> dict[str, str]:
-        """What is known about the database itself."""
+        """Return what is known about the database itself."""
         return dict(self.table("about").rows())
 
     def register(self) -> pl.DataFrame:

@@ -49,7 +49,7 @@ _DECLARED: Final = ("tables",)
 
 
 def _modules(package: str) -> list[Path]:
-    """The files of a package, or that of a single module."""
+    """Return the files of a package, or that of a single module."""
     spec = find_spec(package)
     if spec is None or spec.origin is None:
         raise ModuleNotFoundError(package)

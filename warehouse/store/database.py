@@ -20,7 +20,7 @@ _SPOILT: Final = say(
 
 
 def open_database(path: Path) -> duckdb.DuckDBPyConnection:
-    """The database, to read only; tables of the schema `study` are found by their name alone.
+    """Open the database to read; tables of the schema `study` are found by their name alone.
 
     Raises:
         MissingKnowledgeError: it was not made yet.
@@ -44,7 +44,7 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
 
 
 def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError:
-    """What to say of an edition or draft that the database does not hold."""
+    """Return the error about an edition or draft that the database does not hold."""
     return MissingKnowledgeError(
         "the last rebuild has no edition {}; it has {}. One published since is there after herijk "
         "rebuild",
@@ -54,7 +54,7 @@ def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError
 
 
 def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> list[Row]:
-    """What a query gives, a dictionary per row; `values` fill its question marks."""
+    """Run a query; return a dictionary per row. `values` fill its question marks."""
     cursor = connection.execute(query, list(values))
     names = [column[0] for column in cursor.description or []]
     return [dict(zip(names, row, strict=True)) for row in cursor.fetchall()]

@@ -45,7 +45,7 @@ class _File(BaseModel):
 
 
 def read_decisions(path: Path) -> tuple[Decision, ...]:
-    """The decisions in a file, oldest first; none when there is no file.
+    """Read the decisions in a file, oldest first; none where there is no file.
 
     Raises:
         MissingKnowledgeError: the file cannot be understood, or decides twice about one tow.
@@ -59,6 +59,6 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
 
 
 def decision_table(decisions: Sequence[Decision]) -> pl.DataFrame:
-    """The verdicts as `pipeline.register.register.draft_register` takes them."""
+    """Return the verdicts as `pipeline.register.register.draft_register` takes them."""
     rows = [{"tow_id": d.sleep_id, "verdict": VERDICTS[d.oordeel]} for d in decisions]
     return pl.DataFrame(rows, schema=DECISION_SCHEMA)

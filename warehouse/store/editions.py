@@ -104,7 +104,7 @@ class Manifest(BaseModel):
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
     def sealed(self) -> "Manifest":
-        """The same with its seal."""
+        """Return the manifest with its seal."""
         return self.model_copy(update={"seal": self.expected_seal})
 
 
@@ -159,7 +159,7 @@ def is_edition_name(name: str) -> bool:
 
 
 def edition_path(store: Store, edition: str) -> Path:
-    """The folder of a published edition.
+    """Return the folder of a published edition.
 
     Raises:
         MissingKnowledgeError: there is none of that name.
@@ -193,13 +193,13 @@ def check_new_name(store: Store, edition: str) -> None:
 
 
 def manifest_path(path: Path) -> Path:
-    """The manifest of an edition, under its name of now or of before."""
+    """Return the manifest of an edition, under its name of now or of before."""
     older = path / OLDER_MANIFEST
     return older if older.exists() else path / MANIFEST
 
 
 def read_manifest(path: Path) -> Manifest:
-    """What an edition says of itself.
+    """Return what an edition says of itself.
 
     Raises:
         BrokenPromiseError: its manifest is missing or cannot be read.
@@ -271,7 +271,7 @@ def read_edition(store: Store, edition: str) -> Edition:
 
 
 def method_of_edition(store: Store, edition: str) -> Method:
-    """The method that an edition was made with, as it was then.
+    """Return the method that an edition was made with, as it was then.
 
     Raises:
         MissingKnowledgeError: the edition was taken over from print and has no method.
@@ -310,7 +310,7 @@ def read_table(path: Path, name: str) -> pl.DataFrame:
 
 
 def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str, bytes]]) -> Path:
-    """Makes an edition of files, by name.
+    """Make an edition of files, by name.
 
     They are asked for where no other publication is at work, since they say which came before.
 
@@ -340,7 +340,7 @@ def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str,
 
 @contextmanager
 def _one_at_a_time(root: Path) -> Iterator[None]:
-    """Keeps other publications out, so that anything half-written was left by a dead one."""
+    """Keep other publications out, so that anything half-written was left by a dead one."""
     with FileLock(root / _LOCK):
         for left in root.glob(f"{TEMPORARY_PREFIX}*"):
             if left.is_dir():

@@ -15,7 +15,7 @@ TEMPORARY_PREFIX = ".herijk-"
 
 @contextmanager
 def written_beside(path: Path) -> Iterator[Path]:
-    """Gives a temporary path in the same folder and, if all went well, renames it to `path`.
+    """Yield a temporary path in the same folder; rename it to `path` if all went well.
 
     The content is synced before the rename, and the rename replaces an older file at once; after
     an error or a kill the older file is still there, whole.
@@ -36,7 +36,7 @@ def written_beside(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def folder_written_beside(target: Path) -> Iterator[Path]:
-    """Gives a temporary folder and, if all went well, puts it in the place of `target`.
+    """Yield a temporary folder; put it in the place of `target` if all went well.
 
     All files are synced first. The older folder is renamed before, so for a moment there is none.
     """
@@ -65,7 +65,7 @@ def file_sha256(path: Path) -> str:
 
 
 def write_new(path: Path, text: str) -> None:
-    """Writes a text file that was not there; raises FileExistsError where there is one."""
+    """Write a text file that was not there; raise FileExistsError where there is one."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("xb") as file:
         file.write(text.encode())

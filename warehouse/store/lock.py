@@ -22,7 +22,7 @@ _NOT_OURS: Final = {"audit", "dagster", "editions"}
 
 @contextmanager
 def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
-    """Keeps other writers out of a data folder; what dead ones left half-written is removed.
+    """Keep other writers out of a data folder; what dead ones left half-written is removed.
 
     Args:
         root: the data folder; made if it is not there.
@@ -52,7 +52,7 @@ def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
 
 
 def _remove_leftovers(root: Path) -> None:
-    """Removes what was still being written; the caller holds the lock, so nobody else writes."""
+    """Remove what was still being written; the caller holds the lock, so nobody else writes."""
     pattern = f"{TEMPORARY_PREFIX}*"
     ours = [f for f in root.iterdir() if f.is_dir() and f.name not in _NOT_OURS]
     for left in [*root.glob(pattern), *(left for folder in ours for left in folder.rglob(pattern))]:

@@ -96,7 +96,7 @@ REASSURANCE: Final = say("Earlier results are intact, and finished work is kept.
 
 @contextmanager
 def machine_faults_explained(root: Path) -> Iterator[None]:
-    """Turns an error of the machine into a sentence with the way out; others pass as they are.
+    """Replace errors of the machine by a message that says what to do; others propagate.
 
     Raises:
         UnavailableError: the disk is full, the folder cannot be written, and the like.

@@ -52,7 +52,7 @@ class KnownMethods:
         return (*list_shipped_methods(), *self.own)
 
     def get(self, name: str) -> Method:
-        """A method by name.
+        """Return a method by name.
 
         Raises:
             MissingKnowledgeError: there is no such method.
@@ -69,7 +69,7 @@ class KnownMethods:
         return method
 
     def text(self, name: str) -> str:
-        """The TOML text of a method.
+        """Return the TOML text of a method.
 
         Raises:
             MissingKnowledgeError: there is no such method.
@@ -83,7 +83,7 @@ class KnownMethods:
         return text_of_file(self.folder / f"{name}{SUFFIX}")
 
     def named(self, name_or_file: str) -> Method:
-        """A method by its name, or from a file anywhere.
+        """Read a method by its name, or from a file anywhere.
 
         Raises:
             HerijkError: there is no such method or file, or it has an error.
@@ -98,7 +98,7 @@ class KnownMethods:
         return parse_method(text_of_file(file), str(file), self.text)
 
     def kept(self, name_or_file: str) -> str:
-        """The name under which a method is known; a file is first copied into the folder.
+        """Return the name under which a method is known; a file is first copied into the folder.
 
         Raises:
             HerijkError: it has an error, or the name of a method that ships.
@@ -141,7 +141,7 @@ def _held(store: Store) -> list[str]:
 
 
 def text_of_file(file: Path) -> str:
-    """The text of a method file.
+    """Read the text of a method file.
 
     Raises:
         MissingKnowledgeError: it is not there.

@@ -12,7 +12,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
-    """The settings in a file; the model's defaults where there is no file.
+    """Read the settings in a file; the model's defaults where there is no file.
 
     Args:
         path: the file.

@@ -29,13 +29,13 @@ FAILED_KEY: Final = "herijk.failed"
 
 
 def fingerprint(*parts: object) -> str:
-    """A hash of anything that JSON can hold, equal wherever the parts are equal."""
+    """Return a hash of anything that JSON can hold, equal wherever the parts are equal."""
     text = json.dumps(parts, sort_keys=True, default=str, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def table_digest(frame: pl.DataFrame) -> str:
-    """A hash of a table's values as they are read: 13 significant digits, in row order."""
+    """Return a hash of a table's values as they are read: 13 significant digits, in row order."""
     lists = [c for c, dtype in frame.schema.items() if isinstance(dtype, pl.List)]
     flat = frame.with_columns(pl.col(lists).list.join("\x1f")) if lists else frame
     text = flat.write_csv(float_scientific=True, float_precision=12)
@@ -74,11 +74,11 @@ class Store:
         return self.lake / "file_hashes.json"
 
     def samples_path(self, season: int, key: str) -> Path:
-        """The samples of one tow."""
+        """Return the path of the samples of one tow."""
         return self.lake / "samples" / f"season={season}" / f"{key}.parquet"
 
     def blocks_path(self, season: int, key: str) -> Path:
-        """The blocks of one tow."""
+        """Return the path of the blocks of one tow."""
         return self.lake / "blocks" / f"season={season}" / f"{key}.parquet"
 
     @property
@@ -87,11 +87,11 @@ class Store:
         return self.lake / "tables"
 
     def table_path(self, table: str) -> Path:
-        """A table."""
+        """Return the path of a table."""
         return self.table_folder / f"{table}.parquet"
 
     def write(self, table: str, frame: pl.DataFrame, made_from: str = "", failed: str = "") -> None:
-        """Writes a table with the fingerprint of what it was made from."""
+        """Write a table with the fingerprint of what it was made from."""
         about = {FINGERPRINT_KEY: made_from, CONTENTS_KEY: contents_of(table, frame)}
         about |= {FAILED_KEY: failed} if failed else {}
         write_parquet(frame, self.table_path(table), about)
@@ -99,7 +99,7 @@ class Store:
     def read(
         self, table: str, method: str | None = None, columns: Sequence[str] | None = None
     ) -> pl.DataFrame:
-        """A table as written, or its rows of one method, or some of its columns."""
+        """Read a table as written, or its rows of one method, or some of its columns."""
         asked = columns if method is None or columns is None else [*{"method", *columns}]
         frame = read_parquet(self.table_path(table), asked)
         if method is None:
@@ -116,7 +116,7 @@ class Store:
         return metadata_of(self.table_path(table), CONTENTS_KEY)
 
     def failed(self, table: str) -> str | None:
-        """The traceback of a table whose rows are missing because our code failed."""
+        """Return the traceback of a table whose rows are missing because our code failed."""
         return metadata_of(self.table_path(table), FAILED_KEY)
 
     def count_rows(self, table: str) -> int:
@@ -125,7 +125,7 @@ class Store:
 
 
 def contents_of(name: str, frame: pl.DataFrame) -> str:
-    """A hash of what a table says; where an archive lies says nothing about it."""
+    """Return a hash of what a table says; where an archive lies says nothing about it."""
     told = frame.drop("root") if name == "about_archive" else frame
     hashed = hashlib.sha256(str(told.schema).encode())
     hashed.update(told.write_ipc(None, compat_level=pl.CompatLevel.oldest()).getbuffer())
@@ -141,7 +141,7 @@ def archive_root(store: Store) -> Path | None:
 
 
 def no_warehouse(store: Store) -> MissingKnowledgeError:
-    """What to say of a data folder in which nothing was ever rebuilt."""
+    """Return the error about a data folder in which nothing was ever rebuilt."""
     return MissingKnowledgeError(
         "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
         store.root,
@@ -177,7 +177,7 @@ _UNREADABLE: Final = (
 def read_parquet(
     path: Path, columns: Sequence[str] | None = None, use_threads: bool = True
 ) -> pl.DataFrame:
-    """A frame that was written with `write_parquet`, its checksums verified.
+    """Read a frame that was written with `write_parquet`, and verify its checksums.
 
     Args:
         path: the file.
@@ -194,7 +194,7 @@ def read_parquet(
 
 
 def metadata_of(path: Path, key: str) -> str | None:
-    """What a file says of itself under a key; None if it is not there or damaged, or silent."""
+    """Return what a file says of itself under a key; None if it says nothing or is damaged."""
     if not path.exists():
         return None
     try:
@@ -230,7 +230,7 @@ def write_parquet(
     metadata: dict[str, str] | None = None,
     form: Mapping[str, object] | None = None,
 ) -> None:
-    """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
+    """Write a frame as Parquet, whole or not at all, with a checksum of every page.
 
     Without checksums a changed byte can be read as another number.
 

@@ -38,12 +38,12 @@ def in_short(error: BaseException) -> str:
 
 
 def traced(error: BaseException) -> str:
-    """The traceback as text."""
+    """Return the traceback as text."""
     return "".join(traceback.format_exception(error))
 
 
 def sentence(tow_id: str, told: str) -> Sentence:
-    """What a volunteer reads about a tow that Herijk failed on."""
+    """Return what a volunteer reads about a tow that Herijk failed on."""
     return say(
         "Herijk itself failed on this tow ({}). Its files may be sound. Please report this to the "
         "maintainer of Herijk, with unforeseen/{}.txt of the data folder.",
@@ -53,7 +53,7 @@ def sentence(tow_id: str, told: str) -> Sentence:
 
 
 def note(root: Path, what: str, trace: str) -> None:
-    """Keeps the traceback of a failure in the data folder."""
+    """Keep the traceback of a failure in the data folder."""
     with written_beside(_file(root, what)) as beside:
         beside.write_text(trace, encoding="utf-8")
 
@@ -104,7 +104,7 @@ def documents(root: Path, command: str) -> Iterator[Border]:
 
 
 def forget(root: Path, what: str) -> None:
-    """Removes what was kept of an earlier failure."""
+    """Remove what was kept of an earlier failure."""
     _file(root, what).unlink(missing_ok=True)
 
 
