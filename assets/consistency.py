@@ -5,7 +5,7 @@ import polars as pl
 
 from assets.lake import Folders, incremental, outs
 from pipeline.consistency import compared, prediction, repeats
-from pipeline.consistency.observed import observe_trusted, of_trusted
+from pipeline.consistency.observed import observe_trusted, select_trusted
 
 
 @dg.asset
@@ -54,7 +54,7 @@ def predicted_cw(
 @incremental(may_fail=True)
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Boats and crews that were towed again."""
-    return repeats.repeat_pairs(of_trusted(curves, tows), tows)
+    return repeats.repeat_pairs(select_trusted(curves, tows), tows)
 
 
 @dg.asset

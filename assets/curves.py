@@ -9,7 +9,7 @@ import polars as pl
 from assets.lake import Folders, incremental, outs
 from assets.rules import read_methods
 from pipeline.blocks.run_blocks import stack_blocks
-from pipeline.recompute.facts import with_hand_windows
+from pipeline.recompute.facts import add_hand_windows
 from pipeline.recompute.run_cache import RunCache
 from pipeline.studies import summaries
 from pipeline.tables.schemas import conform
@@ -76,7 +76,7 @@ def studies(
     tow_instruments: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
     """Return the ladder from the first method to each other, and the studies of its options."""
-    runs = stack_blocks(blocks, with_hand_windows(tow_runs, hand_windows))
+    runs = stack_blocks(blocks, add_hand_windows(tow_runs, hand_windows))
     cache = RunCache()
     applied = read_methods(folders, methods)
     of_methods = [

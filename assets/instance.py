@@ -11,7 +11,7 @@ import dagster as dg
 import yaml  # type: ignore[import-untyped]
 
 from pipeline.errors import MissingKnowledgeError
-from warehouse.store.files import TEMPORARY_PREFIX, written_beside
+from warehouse.store.files import TEMPORARY_PREFIX, write_beside
 from warehouse.store.store import Store
 
 INSTANCE_SETTINGS: Final = Path(__file__).with_name("dagster.yaml")
@@ -60,6 +60,6 @@ def prepare_home(store: Store) -> Path:
     if not settings.exists():
         for left in home.glob(f"{TEMPORARY_PREFIX}*"):  # of a process that was killed here
             left.unlink()
-        with written_beside(settings) as beside:
+        with write_beside(settings) as beside:
             shutil.copyfile(INSTANCE_SETTINGS, beside)
     return home.resolve()

@@ -29,10 +29,10 @@ from pipeline.method.definition import Method
 from pipeline.tables.frames import dtypes
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.store.code import COMPUTING, code_hash
-from warehouse.store.lock import only_writer
+from warehouse.store.lock import hold_write_lock
 from warehouse.store.methods import KnownMethods, methods_to_apply
-from warehouse.store.store import DamagedFileError, Store, contents_of, fingerprint
-from warehouse.store.unforeseen import is_unforeseen, traced
+from warehouse.store.store import DamagedFileError, Store, digest_contents, fingerprint
+from warehouse.store.unforeseen import format_traceback, is_unforeseen
 
 LOG: Final = logging.getLogger("herijk")
 """Says which assets are made; the command shows it, and Dagster keeps it with the run."""
@@ -98,7 +98,7 @@ class Lake(dg.ConfigurableIOManager):
         served = [os.environ.get(name, "") for name in ("HERIJK_ARCHIVE", "HERIJK_DATA")]
         if os.environ.get("HERIJK_SITE") and [self.folders.archive, self.folders.data] != served:
             raise MissingKnowledgeError("this server works on {} and {} alone", *served)
-        with only_writer(Path(self.folders.data), wait=True):
+        with hold_write_lock(Path(self.folders.data), wait=True):
             yield self
 
     def load_input(self, context: dg.InputContext) -> pl.DataFrame:
@@ -165,7 +165,7 @@ def incremental(
                 if not may_fail or not is_unforeseen(error):
                     raise
                 context.log.exception("Herijk itself failed here: the rows are missing")
-                failure = traced(error)
+                failure = format_traceback(error)
                 frames = {name: TABLES[name].create_empty() for name in names}
             if read:  # what looks outside runs every time
                 seconds = time.monotonic() - began
@@ -220,7 +220,7 @@ def hand_over_outputs(
         }
         if failure:
             metadata[FAILED] = failure
-        version = dg.DataVersion(contents_of(name, frame))
+        version = dg.DataVersion(digest_contents(name, frame))
         yield dg.MaterializeResult(
             asset_key=name, value=frame, data_version=version, metadata=metadata
         )

@@ -15,9 +15,9 @@ from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from warehouse.intake.lake import ArchiveChangedError
 from warehouse.intake.seasons import listing
 from warehouse.store.code import code_hash
-from warehouse.store.files import written_beside
-from warehouse.store.lock import only_writer
-from warehouse.store.machine_faults import machine_faults_explained
+from warehouse.store.files import write_beside
+from warehouse.store.lock import hold_write_lock
+from warehouse.store.machine_faults import explain_machine_faults
 from warehouse.store.store import DamagedFileError, Store, fingerprint
 
 EVERYTHING: Final = ("pipeline", "warehouse", "dashboards", "assets")
@@ -55,11 +55,11 @@ def rebuild(
     check_apart(archive, data)
     store = Store(data.resolve())
     asked = fingerprint(sorted(methods), sorted(seasons or ()))
-    with machine_faults_explained(data), only_writer(data):
+    with explain_machine_faults(data), hold_write_lock(data):
         if _is_unchanged(store, archive, asked):
             return confirm_report(store, dt.datetime.now().astimezone())
         try:
-            with machine_faults_explained(data):
+            with explain_machine_faults(data):
                 done = _run_until_sound(archive, data, methods, sorted(seasons or ()), selection)
         except NoTowsYetError:
             raise
@@ -68,7 +68,7 @@ def rebuild(
             raise
         report = read_report(store, done)
         if selection is None and not failed_checks(report.checks):
-            with written_beside(_stamp_path(store)) as beside:
+            with write_beside(_stamp_path(store)) as beside:
                 beside.write_text(compute_stamp(store, archive, asked))
     return report
 

@@ -29,7 +29,7 @@ from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE
 from warehouse.queries.change_report import ChangeReport, change_report, last_changes, remember
 from warehouse.store.code import code_version
-from warehouse.store.files import written_beside
+from warehouse.store.files import write_beside
 from warehouse.store.store import Store
 
 ERROR: Final = "ERROR"
@@ -210,5 +210,5 @@ def _to_json(report: Report) -> str:
 
 
 def _write(path: Path, text: str) -> None:
-    with written_beside(path) as beside:
+    with write_beside(path) as beside:
         beside.write_text(text, encoding="utf-8")

@@ -8,7 +8,7 @@ import polars as pl
 from assets.lake import Folders, incremental, outs
 from pipeline.method.definition import Method
 from warehouse.derive.registers import published_tables
-from warehouse.store.decisions import FILE_NAME, decision_table, read_decisions
+from warehouse.store.decisions import FILE_NAME, read_decisions, tabulate_decisions
 from warehouse.store.methods import KnownMethods
 
 FACTS: Final = ("title", "title_en", "interval", "content_hash", "definition")
@@ -45,7 +45,7 @@ def methods(applied_methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame
 @incremental()
 def decisions(folders: Folders) -> pl.DataFrame:
     """Return what people decided about tows, in `besluiten.toml`."""
-    return decision_table(read_decisions(folders.store.root / FILE_NAME))
+    return tabulate_decisions(read_decisions(folders.store.root / FILE_NAME))
 
 
 @dg.multi_asset(

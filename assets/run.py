@@ -11,7 +11,7 @@ from assets.instance import OF_A_COMMAND, end_lost_runs, open_instance
 from assets.lake import NEW
 from assets.report import Done
 from pipeline.errors import HerijkError
-from warehouse.store.lock import only_writer
+from warehouse.store.lock import hold_write_lock
 from warehouse.store.store import Store
 
 
@@ -41,7 +41,7 @@ def run_job(
     config: dict[str, Any] = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
     if seasons:
         config["ops"] = {"samples": {"config": {"seasons": list(seasons)}}}
-    with only_writer(data), open_instance(Store(data)) as instance:
+    with hold_write_lock(data), open_instance(Store(data)) as instance:
         end_lost_runs(instance, OF_A_COMMAND)
         try:
             result = job.execute_in_process(

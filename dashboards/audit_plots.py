@@ -17,7 +17,7 @@ from pipeline.messages import speaker
 from pipeline.register.register import default_method
 from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.views import Views
-from warehouse.store.files import written_beside
+from warehouse.store.files import write_beside
 from warehouse.store.store import Store
 
 SCATTERS: Final = ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "cw_standard_speed")
@@ -48,7 +48,7 @@ def write_audit_plots(
         files = [_write(plot, report, folder, language) for plot in plots if plot.rows.height]
     title = ", ".join(_about(report))
     pictures = Markup("\n").join(_PICTURE.format(f.name, f.stem) for f in files)
-    with written_beside(folder / "index.html") as beside:
+    with write_beside(folder / "index.html") as beside:
         beside.write_text(_INDEX.format(language, title, title, pictures), encoding="utf-8")
     return files
 
@@ -112,7 +112,7 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: s
         if parameter["name"] == "chosen":
             parameter["value"] = about[0]
     path = folder / f"{file_name(f'{plot.figure} {plot.of}')}.svg"
-    with written_beside(path) as beside:
+    with write_beside(path) as beside:
         beside.write_text(drawn.svg(spec, plot.rows, language), encoding="utf-8")
     return path
 

@@ -14,7 +14,7 @@ from herijk.cli.forms import FORMS, schema
 from herijk.cli.main import app
 from pipeline.assessment.checks import CHECK, Check
 from pipeline.method.options import Steps
-from pipeline.tables.schemas import STUDY, TABLES, summary_of
+from pipeline.tables.schemas import STUDY, TABLES, summarize_table
 from pipeline.tables.views import VIEWS
 
 project = "Herijk"
@@ -77,7 +77,7 @@ def _tables() -> Iterator[str]:
     """Every table and view with the first sentence of its meaning."""
     yield "\n## All tables\n\n| table | a row is |\n| --- | --- |\n"
     for name, table in TABLES.items():
-        yield f"| `{'study.' * (name in STUDY)}{name}` | {summary_of(table)} |\n"
+        yield f"| `{'study.' * (name in STUDY)}{name}` | {summarize_table(table)} |\n"
     for name, view in VIEWS.items():
         yield f"| `{name}` | {view.meaning} |\n"
 

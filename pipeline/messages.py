@@ -176,7 +176,7 @@ def number(value: float, form: str) -> str:
     return format(value, form).replace(".", DECIMALS[LANGUAGE.get()])
 
 
-def in_per_cent(probability: float) -> str:
+def format_probability(probability: float) -> str:
     """Return a probability that was counted in draws, which never make it certain."""
     if probability < 0.01:
         return "<\u00a01\u00a0%"
@@ -207,7 +207,7 @@ def innermost(text: str) -> str:
     return text
 
 
-def cause_of(text: str) -> str:
+def find_cause(text: str) -> str:
     """Return what sentences of one cause share: the same words about the same column.
 
     What differs from fault to fault is left open: `column 'klasse' is '…'; H or D is expected.`

@@ -11,7 +11,7 @@ from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.archive_tables import add_first_seen, read_archive, read_earlier
 from warehouse.derive.recomputing import ArchiveRuns, recompute_archive
 from warehouse.derive.registers import published_tables, register_tables
-from warehouse.store.decisions import FILE_NAME, decision_table, read_decisions
+from warehouse.store.decisions import FILE_NAME, read_decisions, tabulate_decisions
 from warehouse.store.store import Store
 
 
@@ -52,7 +52,7 @@ def make_registers(store: Store, methods: Sequence[Method]) -> None:
         listed_tows=store.read("listed_tows"),
         printed_registers=store.read("printed_registers"),
         log_factors=store.read("log_factors"),
-        decisions=decision_table(read_decisions(store.root / FILE_NAME)),
+        decisions=tabulate_decisions(read_decisions(store.root / FILE_NAME)),
         published=published,
         correction_steps=read_earlier(store, "correction_steps"),
         methods=methods,

@@ -19,7 +19,7 @@ from babel.messages.pofile import read_po, write_po
 from herijk.cli.main import app
 from pipeline import errors
 from pipeline.messages import CATALOGUES, DOMAIN
-from pipeline.tables.schemas import ABOUT, TABLES, summary_of
+from pipeline.tables.schemas import ABOUT, TABLES, summarize_table
 from tests.architecture.repository import ROOT, modules
 
 PO = Path(CATALOGUES) / "nl" / "LC_MESSAGES" / f"{DOMAIN}.po"
@@ -110,7 +110,7 @@ def said() -> Iterator[tuple[str, Text]]:
     yield from (("herijk/cli", text) for text in in_help(app))
     yield from (("herijk/cli", (text, None)) for text in OF_CLICK)
     tables = (TABLES | ABOUT).values()
-    yield from (("pipeline/tables", (summary_of(table), None)) for table in tables)
+    yield from (("pipeline/tables", (summarize_table(table), None)) for table in tables)
 
 
 def catalogue() -> Catalog:

@@ -82,7 +82,7 @@ STILL_AIR = {"wind_v": "log1_v", "wind_x": "log1_v", "wind_y": None, "wind_sin":
 """What blocks hold where no wind was measured: the boat's own speed from ahead, or nothing."""
 
 
-def without_gps(world: Measured, tows: np.ndarray) -> Measured:
+def find_tows_without_gps(world: Measured, tows: np.ndarray) -> Measured:
     """The same world in which some tows, marked in shape (tows,), had no GPS on board."""
     lost = _runs_of(world, tows)
     sums = {

@@ -24,7 +24,7 @@ from benchmarks.accuracy.score import score, table
 from benchmarks.accuracy.worlds import FIRST_SEED, ONLY_FROM_FILES, recomputed, simulated
 from herijk.simulate import WORLDS
 from pipeline.arrays import BoolArray
-from tests.worlds import Measured, without_gps, without_wind
+from tests.worlds import Measured, find_tows_without_gps, without_wind
 
 SEEDS = 20
 FIRST_DRAW = 50_000
@@ -40,7 +40,7 @@ def drawn(rng: np.random.Generator) -> Measured:
         return drawn(rng)
     world = _of_tows(whole, keep)
     few = rng.random(world.tows.height) < rng.choice([0.0, 0.0, 0.1, 0.3])
-    world = without_gps(world, few | _in_seasons(world.tows, 0.15, rng))
+    world = find_tows_without_gps(world, few | _in_seasons(world.tows, 0.15, rng))
     world = without_wind(world, _in_seasons(world.tows, 0.08, rng))
     for fault in rng.choice(list(FOREIGN), size=rng.choice([0, 1, 1, 2]), replace=False):
         world = FOREIGN[str(fault)](world, rng)

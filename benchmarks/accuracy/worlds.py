@@ -41,7 +41,7 @@ from pipeline.consistency.types import compare_types
 from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, truth_rows
-from warehouse.derive.plausible import with_doubts
+from warehouse.derive.plausible import add_doubts
 from warehouse.store.code import code_hash, code_version
 from warehouse.store.database import open_database
 
@@ -123,7 +123,7 @@ def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataF
 
 def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
     """Tables of an archive as a rebuild makes them; where asked, whether equal boats are alike."""
-    tows = with_doubts(archive.tows, plausibility(Tows.of(archive.tows, archive.blocks)))
+    tows = add_doubts(archive.tows, plausibility(Tows.of(archive.tows, archive.blocks)))
     made = recompute(read_shipped_method(METHOD), tows, archive.blocks, with_bands=False)
     tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
     if equal_boats:

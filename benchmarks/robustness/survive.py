@@ -18,7 +18,7 @@ from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from warehouse.store.database import open_database
 from warehouse.store.files import TEMPORARY_PREFIX
-from warehouse.store.store import Store, table_digest
+from warehouse.store.store import Store, digest_table
 
 WORLD = WorldSettings(seasons=(2009, 2014), tows_per_season=4, rate_hz=20, seed=3)
 LOCK = f"{TEMPORARY_PREFIX}lock"
@@ -38,7 +38,7 @@ def digest_tables(data: Path) -> dict[str, str]:
     with open_database(Store(data).database) as db:
         for _, _, name, *_ in db.execute("SHOW ALL TABLES").fetchall():
             table = db.sql(f'SELECT * FROM "{name}"').pl()
-            digests[name] = table_digest(table.drop("first_seen", strict=False))
+            digests[name] = digest_table(table.drop("first_seen", strict=False))
     return digests
 
 

@@ -18,7 +18,7 @@ from dashboards.statements.boat import crew_name, interval
 from pipeline.messages import Sentence, pgettext, say
 from pipeline.method.definition import COMPLETE, RUNS_ALONE
 from pipeline.tables.row import Row
-from warehouse.queries.documents import certificate_lines, curve_of
+from warehouse.queries.documents import certificate_lines, draw_line_curve
 from warehouse.queries.views import Views
 from warehouse.store.unforeseen import Border
 
@@ -107,7 +107,7 @@ def certificates(
 def _one(line: Row, issued: Issued, speech: Speech) -> dict[str, object]:
     say, words = speech.say, speech.words
     code = line["verification_code"] or ""
-    crew, curve = crew_name(line, speech), curve_of(line)
+    crew, curve = crew_name(line, speech), draw_line_curve(line)
     return {
         "name": line["name"] or line["fsn_no"],
         "subtitle": " · ".join(filter(None, (line["fsn_no"], line["boat_type"], crew))),

@@ -17,7 +17,7 @@ from dashboards.statements import Change, Number, Statement, number
 from dashboards.statements.edition import changes, effects, undecided
 from dashboards.statements.method import BASES, EACH_STEP, VOTE, WORKED, Explained, explained
 from dashboards.statements.race import stretched_fatigue
-from pipeline.messages import Sentence, in_per_cent, pgettext, say
+from pipeline.messages import Sentence, format_probability, pgettext, say
 from pipeline.register.register import draft_name
 from pipeline.tables.row import Row
 from warehouse.editions.compare import causes_of
@@ -285,7 +285,7 @@ def _races(views: Views, old: str, new: str) -> Part:
                 names.get(race["new_winner"]) or "\u2013",
                 UNKNOWN
                 if race["change_probability"] is None
-                else in_per_cent(race["change_probability"]),
+                else format_probability(race["change_probability"]),
             ]
             for race in last.to_dicts()
         ],

@@ -28,7 +28,7 @@ from dashboards.site.start import MENU
 from dashboards.speech import Speech
 from pipeline.messages import LANGUAGES
 from warehouse.queries.views import Views
-from warehouse.store.files import folder_written_beside
+from warehouse.store.files import write_folder_beside
 from warehouse.store.store import Store
 from warehouse.store.unforeseen import Border, border
 
@@ -99,7 +99,7 @@ def build_pages(
         bordered: goes round the making of each page; by default a page that fails is left out.
         each: see `Each`.
     """
-    with folder_written_beside(target) as beside:
+    with write_folder_beside(target) as beside:
         work = partial(_write_part, store, beside, as_of, bordered, target.parent == store.root)
         failed = sorted({what for part in each(work, PARTS) for what in part})
         copy_sheets(store, beside)

@@ -14,7 +14,7 @@ from dashboards.statements.edition import NEGLIGIBLE, causes_of_line
 from dashboards.statements.race import place_in_race
 from pipeline.messages import Sentence, say
 from pipeline.tables.row import Row
-from warehouse.queries.answers import answers, own_races, season_faults
+from warehouse.queries.answers import answers, season_faults, select_own_races
 from warehouse.queries.views import DRAFT, Views
 
 LEAST_RANKED: Final = 2
@@ -54,7 +54,7 @@ class Answer:
 
     Attributes:
         line: a row of `warehouse.queries.answers.answers`.
-        races: rows of `own_races` of this boat and crew.
+        races: rows of `select_own_races` of this boat and crew.
         faults: rows of `season_diagnosis` of its season that a person should look at.
     """
 
@@ -130,7 +130,7 @@ def answers_by_boat(views: Views, edition: str, only: str | None = None) -> dict
         only: the number of the one boat that is asked for; all when left out.
     """
     lines = answers(views, edition)
-    races = own_races(views, next(iter(lines["from_edition"].drop_nulls()), None), edition)
+    races = select_own_races(views, next(iter(lines["from_edition"].drop_nulls()), None), edition)
     crew = ["fsn_no", "rowers", "crew_class"]
     by_crew = races.partition_by(crew, as_dict=True, maintain_order=True)
     faults = season_faults(views) if edition.startswith(DRAFT) else {}  # an edition holds none

@@ -8,7 +8,7 @@ import polars as pl
 from dashboards import labels
 from dashboards.speech import Headline, duration
 from dashboards.statements import EditionName, Statement, Value, together, told
-from pipeline.messages import in_per_cent, say
+from pipeline.messages import format_probability, say
 from pipeline.races.race import FATIGUE_REFERENCE
 from pipeline.tables.row import Row
 
@@ -17,7 +17,7 @@ Chances: TypeAlias = Mapping[tuple[str, str], float | None]
 
 
 def place_in_race(race: Row) -> Statement:
-    """The place of a crew in a race under both editions; a row of `own_races`."""
+    """The place of a crew in a race under both editions; a row of `select_own_races`."""
     if race["new_rank"] is None:
         why: list[Value] = [
             told(
@@ -76,7 +76,7 @@ def _winner(rows: pl.DataFrame, chances: Chances) -> Iterator[Statement]:
     chance = chances.get((f"{rows['race'][0]} {rows['race_date'][0]}", crew_class))
     if chance is not None and not few:  # who else might have won is not known of the others
         wording = say(" Chance that another wins than before: {chance}.")
-        yield told("winner_chance", wording, {}, "ensemble", chance=in_per_cent(chance))
+        yield told("winner_chance", wording, {}, "ensemble", chance=format_probability(chance))
 
 
 def _few_places(rows: pl.DataFrame) -> Iterator[Statement]:

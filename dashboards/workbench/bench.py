@@ -20,11 +20,11 @@ from pipeline.errors import HerijkError
 from pipeline.method.definition import Method, SeasonSteps
 from pipeline.method.options import Steps
 from pipeline.method.reading import list_shipped_methods
-from pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
+from pipeline.method.variant import Difference, cut_at, differences, variant, write_variant_text
 from warehouse.queries.history import Draft, History
 from warehouse.queries.scenario import Scenario
 from warehouse.queries.views import ALL, NEWEST
-from warehouse.store.editions import edition_names, method_of_edition, read_edition
+from warehouse.store.editions import edition_names, read_edition, read_edition_method
 from warehouse.store.files import write_new
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
@@ -150,14 +150,14 @@ class Bench:
         method = self.method(asked, wanted.name, wanted.title, wanted.reason)
         path = self.known.folder / f"{wanted.name}.toml"
         try:
-            write_new(path, variant_text(method))
+            write_new(path, write_variant_text(method))
         except FileExistsError as error:
             raise HerijkError("{} is there already; choose another name", path) from error
         return path
 
     def _against(self, name: str) -> Method:
         if name in edition_names(self.store):
-            return method_of_edition(self.store, name)
+            return read_edition_method(self.store, name)
         return self.known.get(name)
 
 

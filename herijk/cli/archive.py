@@ -9,7 +9,7 @@ from herijk.cli.options import PATH, Seasons, data_option, json_option, show, sh
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import tell
-from warehouse.store.machine_faults import machine_faults_explained
+from warehouse.store.machine_faults import explain_machine_faults
 
 if TYPE_CHECKING:
     from warehouse.store.store import Store
@@ -64,7 +64,7 @@ def simulate(
     settings = world_settings(
         world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    with machine_faults_explained(directory), tows_counted() as counted:
+    with explain_machine_faults(directory), tows_counted() as counted:
         truth = write_simulated_archive(directory, simulate_world(settings), counted)
     made = {"archive": str(directory), "truth": str(truth)}
     show(made, lambda made: [tell("Simulated archive: {archive}\nIts truth: {truth}", **made)])

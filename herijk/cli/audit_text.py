@@ -33,7 +33,7 @@ from pipeline.tables.row import Row
 from warehouse.queries.answers import current_edition
 from warehouse.queries.audit import BoatAudit, TypesAudit
 from warehouse.queries.views import Views
-from warehouse.store.database import no_such_edition
+from warehouse.store.database import make_unknown_edition_error
 from warehouse.store.store import Store
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def answers_of(store: Store, boat: Row, edition: str | None) -> list[Answer]:
         chosen = edition or current_edition(views)
         known = views.table("register")["edition"].unique()
         if chosen not in known:
-            raise no_such_edition(chosen, known)
+            raise make_unknown_edition_error(chosen, known)
         return answers_by_boat(views, chosen, boat["fsn_no"]).get(boat["fsn_no"], [])
 
 

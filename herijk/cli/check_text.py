@@ -14,7 +14,7 @@ from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, say, spoken, tell
 from warehouse.archive.check import CauseReport, CheckReport, check_archive
 from warehouse.queries.reports import rebuild_report
-from warehouse.store.lock import only_writer
+from warehouse.store.lock import hold_write_lock
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
@@ -88,7 +88,7 @@ def _looked(what: str, look: Callable[[], str]) -> Finding:
 
 
 def _free(store: Store) -> str:
-    with only_writer(store.root):
+    with hold_write_lock(store.root):
         return tell("free")
 
 

@@ -11,7 +11,7 @@ from dashboards import labels
 from dashboards.statements.edition import changes
 from herijk.cli.methods_text import options_table
 from herijk.cli.render import Part, Section, codes, marked, prose, speech
-from pipeline.messages import in_per_cent, say, tell
+from pipeline.messages import format_probability, say, tell
 from pipeline.method.variant import Difference, differences
 from pipeline.register.register import draft_name
 from pipeline.register.replay import RaceRules
@@ -167,4 +167,4 @@ def _races(report: DiffReport) -> Iterator[Part]:
 
 def _chance(winner: Row) -> str:
     chance = winner["change_probability"]
-    return tell("not known") if chance is None else in_per_cent(chance)
+    return tell("not known") if chance is None else format_probability(chance)

@@ -118,15 +118,15 @@ def _write(store: "Store", content: bytes | None, name: str, out: Path | None) -
     """
     if content is None:
         return
-    from warehouse.store.files import written_beside
-    from warehouse.store.machine_faults import machine_faults_explained
+    from warehouse.store.files import write_beside
+    from warehouse.store.machine_faults import explain_machine_faults
 
     usual = f"{name}.pdf"
     path = out or store.root / "documents" / usual
     if path.is_dir() or path.suffix.lower() != ".pdf":
         path /= usual
-    with machine_faults_explained(path.parent):
+    with explain_machine_faults(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with written_beside(path) as beside:
+        with write_beside(path) as beside:
             beside.write_bytes(content)
     show_files([path])

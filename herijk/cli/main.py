@@ -24,7 +24,7 @@ from herijk.cli.running import rebuild, serve, workbench
 from herijk.cli.speaking import Group, option
 from pipeline.errors import HerijkError, unexpected
 from pipeline.messages import LANGUAGE, say, spoken, tell
-from warehouse.store.machine_faults import REASSURANCE, machine_faults_explained
+from warehouse.store.machine_faults import REASSURANCE, explain_machine_faults
 
 SECTIONS: Final = {
     say("Begin"): ("init", "check", "rebuild", "simulate"),
@@ -79,7 +79,7 @@ def main() -> None:
     os.environ.setdefault(ARROW_MEMORY, "system")
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C; it is what systemd sends
     try:
-        with machine_faults_explained(Path(os.environ.get("HERIJK_DATA", "data"))):
+        with explain_machine_faults(Path(os.environ.get("HERIJK_DATA", "data"))):
             sys.exit(app.main(standalone_mode=False))
     except HerijkError as error:
         click.echo(f"herijk: {spoken(error, LANGUAGE.get())}", err=True)

@@ -78,7 +78,7 @@ def check(name: str, store: "Store") -> None:
 @json_option
 def new(name: str, base: str, store: "Store") -> None:
     """Begin a method file NAME.toml here, which extends another; every option is listed in it."""
-    from pipeline.method.writing import beginning_text
+    from pipeline.method.writing import write_new_method_text
     from warehouse.store.files import write_new
     from warehouse.store.methods import KnownMethods
 
@@ -86,7 +86,7 @@ def new(name: str, base: str, store: "Store") -> None:
     file = Path(f"{name}.toml")
     if name in known.names:
         raise HerijkError("{} is the name of another method; choose another", name)
-    text = beginning_text(name, known.get(base))
+    text = write_new_method_text(name, known.get(base))
     try:
         write_new(file, text)
     except FileExistsError as error:

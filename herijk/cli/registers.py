@@ -51,11 +51,11 @@ def _method_of(store: "Store", edition: str | None) -> str | None:
     if edition is None:
         return None
     from pipeline.register.register import draft_name
-    from warehouse.store.editions import edition_names, method_of_edition
+    from warehouse.store.editions import edition_names, read_edition_method
     from warehouse.store.methods import KnownMethods
 
     if edition in edition_names(store):
-        return method_of_edition(store, edition).name
+        return read_edition_method(store, edition).name
     return KnownMethods.of(store).get(edition.removeprefix(draft_name(""))).name
 
 

@@ -10,7 +10,7 @@ from herijk.cli.options import Seasons, archive_option, data_option, json_option
 from herijk.cli.speaking import Command, flag, option
 from pipeline.errors import BrokenPromiseError, NoTowsYetError
 from pipeline.messages import LANGUAGE, spoken, tell
-from warehouse.store.machine_faults import machine_faults_explained
+from warehouse.store.machine_faults import explain_machine_faults
 
 if TYPE_CHECKING:
     from warehouse.store.store import Store
@@ -42,7 +42,7 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     known = KnownMethods.of(store)
     chosen = applied(store.root, [known.kept(name) for name in methods])
     try:
-        with machine_faults_explained(store.root), rebuild_shown():
+        with explain_machine_faults(store.root), rebuild_shown():
             news = run(archive, store.root, chosen, seasons)
     except NoTowsYetError as error:  # a new archive is no failure
         reason = spoken(error, LANGUAGE.get())
@@ -73,7 +73,7 @@ def serve(archive: Path, store: "Store", host: str, port: int, may_start: bool) 
 
     check_apart(archive, store.root)
     read_settings(store.root)
-    with machine_faults_explained(store.root):
+    with explain_machine_faults(store.root):
         with open_instance(store) as instance:
             end_lost_runs(instance, {})
         served = Served(archive, store.root, host, port, may_start)

@@ -16,7 +16,7 @@ from pipeline.method.definition import Method
 from pipeline.method.reading import list_shipped_methods, parse_method, read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.tables.archive import Tows
-from warehouse.store.methods import text_of_file
+from warehouse.store.methods import read_method_file
 
 REQUIRED: Final = ("declared_speed_m_s", "waterline_length_m", "beam_m", "bow_height_m")
 DEFAULTS: Final = {
@@ -66,7 +66,7 @@ def method(name_or_file: str | Path) -> Method:
     file = Path(name_or_file)
     if file.suffix != ".toml":
         return read_shipped_method(str(name_or_file))
-    return parse_method(text_of_file(file), str(file))
+    return parse_method(read_method_file(file), str(file))
 
 
 def apply_method(

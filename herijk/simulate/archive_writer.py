@@ -22,8 +22,8 @@ import polars as pl
 from herijk.simulate import RunTruth, Tow, World, simulate_tow, true_cw_kg_m
 from herijk.simulate.defects import FIRST_SEASON
 from herijk.simulate.hull import REFERENCE_TEMPERATURE_C
-from herijk.simulate.papers import RACE_KM, Curves, printed_register, race
-from herijk.simulate.practice import Practice, practices, printed_curve
+from herijk.simulate.papers import RACE_KM, Curves, print_register, race
+from herijk.simulate.practice import Practice, practices, print_curve
 from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.errors import HerijkError
 
@@ -93,7 +93,7 @@ Row: TypeAlias = dict[str, str]
 """Cells of a list by the header of their column; the first row of a list gives all headers."""
 
 
-def spelling_of(season: int) -> Spelling:
+def find_spelling(season: int) -> Spelling:
     """Return the spelling of a season's files."""
     return SPELLINGS[(season - FIRST_SEASON) % len(SPELLINGS)]
 
@@ -188,7 +188,7 @@ def _write_tow(
     directory: Path, world: World, tow: Tow
 ) -> tuple[tuple[RunTruth, ...], dict[Practice, tuple[float, float]]]:
     samples, runs = simulate_tow(world, tow)
-    spelling = spelling_of(tow.season)
+    spelling = find_spelling(tow.season)
     second = pl.col("run") > SECOND_FILE_OFFSET
     first_run = pl.col("run") - pl.lit(SECOND_FILE_OFFSET, pl.Int8)
     files = {tow.samples_name: samples.filter(~second)}
@@ -198,7 +198,7 @@ def _write_tow(
         path = _samples_folder(directory, tow.season) / f"{name}{spelling.extension}"
         _write_samples(path, part, spelling, world.settings.rate_hz)
     return runs, {
-        practice: printed_curve(samples, runs, tow, practice) for practice in practices(tow.season)
+        practice: print_curve(samples, runs, tow, practice) for practice in practices(tow.season)
     }
 
 
@@ -262,9 +262,9 @@ def _write_papers(directory: Path, world: World) -> None:
     _write_table(register / "sloependata.csv", _boat_rows(world), PLAIN)
     for season in seasons:
         path = directory / "sleeplijsten" / f"sleeplijst_{season}.csv"
-        _write_table(path, _list_rows(world, season), spelling_of(season))
+        _write_table(path, _list_rows(world, season), find_spelling(season))
     path = directory / "wedstrijden" / f"{RACE_NAME.lower()}_{seasons[-1]}.csv"
-    _write_table(path, _race_rows(world, seasons[-1]), spelling_of(seasons[-1]))
+    _write_table(path, _race_rows(world, seasons[-1]), find_spelling(seasons[-1]))
 
 
 def _write_registers(directory: Path, world: World, curves: Curves) -> None:
@@ -272,7 +272,7 @@ def _write_registers(directory: Path, world: World, curves: Curves) -> None:
     seasons = world.settings.seasons
     for year in sorted({seasons[len(seasons) // 2], seasons[-1]}):
         path = directory / "sloepregister" / f"sloepregister_{year}.csv"
-        _write_table(path, _register_rows(world, year, curves), spelling_of(year))
+        _write_table(path, _register_rows(world, year, curves), find_spelling(year))
 
 
 def _write_table(path: Path, rows: Sequence[Row], spelling: Spelling) -> None:
@@ -294,7 +294,7 @@ def _profile(seasons: Sequence[int]) -> str:
         'licence = "CC0-1.0"',
     ]
     for season in seasons:
-        spelling = spelling_of(season)
+        spelling = find_spelling(season)
         if spelling.own_names:
             columns = ", ".join(f'{channel} = "{name}"' for channel, name in OWN_NAMES.items())
             lines += [
@@ -336,7 +336,7 @@ def _list_rows(world: World, season: int) -> list[Row]:
 
 
 def _list_row(world: World, tow: Tow) -> Row:
-    spelling, listed_c = spelling_of(tow.season), tow.listed_temperature_c
+    spelling, listed_c = find_spelling(tow.season), tow.listed_temperature_c
     return {
         "sleep_id": tow.tow_id,
         "datum": spelling.date(tow.day),
@@ -362,7 +362,7 @@ def _list_row(world: World, tow: Tow) -> Row:
 
 
 def _optional_cells(tow: Tow) -> Row:
-    spelling = spelling_of(tow.season)
+    spelling = find_spelling(tow.season)
     freeboards = zip(FREEBOARD_COLUMNS, tow.freeboards_m or (), strict=False)
     return (
         {"lege doft": tow.free_thwart}
@@ -372,7 +372,7 @@ def _optional_cells(tow: Tow) -> Row:
 
 
 def _register_rows(world: World, year: int, curves: Curves) -> list[Row]:
-    spelling = spelling_of(year)
+    spelling = find_spelling(year)
     return [
         {
             "fsn_nr": line.boat.fsn_no,
@@ -384,12 +384,12 @@ def _register_rows(world: World, year: int, curves: Curves) -> list[Row]:
             "roeisnelheid [m/s]": spelling.number(line.declared_speed_m_s, 2),
             "sleepdatum": spelling.date(line.tow_day) if line.tow_day else "",
         }
-        for line in printed_register(world, year, curves)
+        for line in print_register(world, year, curves)
     ]
 
 
 def _race_rows(world: World, season: int) -> list[Row]:
-    spelling = spelling_of(season)
+    spelling = find_spelling(season)
     day, lines = race(world, season)
     return [
         {

@@ -146,7 +146,7 @@ def crew_kg(crew_class: str, rowers: int) -> float:
     return rowers * ROWER_KG[crew_class]
 
 
-def loaded_hull(boat: Boat, on_board_kg: float, weight_kg: float, condition: float) -> Hull:
+def load_hull(boat: Boat, on_board_kg: float, weight_kg: float, condition: float) -> Hull:
     """Return the hull of a boat with its crew.
 
     Args:

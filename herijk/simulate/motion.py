@@ -86,7 +86,7 @@ class TrueRun:
     steering_force: Floats
 
 
-def true_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueRun]:
+def simulate_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueRun]:
     """Return the motion of a tow's six runs, with current and wind, in the order towed."""
     grid_s = np.arange(-LEAD_S, RUN_SECONDS + 1.0, 1.0 / SLOW_HZ)
     ratios = [*TARGET_SPEED_RATIOS[:-1], FAST_RUN_RATIO] if tow.fast_run else TARGET_SPEED_RATIOS

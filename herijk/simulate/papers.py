@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from herijk.simulate.boats import Boat, speed_at_power_m_s
-from herijk.simulate.practice import Practice, practice_of
+from herijk.simulate.practice import Practice, find_practice
 from herijk.simulate.random_streams import Subject, stream
 from herijk.simulate.world import Tow, World
 
@@ -54,7 +54,7 @@ Curves: TypeAlias = Mapping[str, Mapping[Practice, tuple[float, float]]]
 """A and B of every tow, by each practice by which it can have been printed."""
 
 
-def printed_register(world: World, year: int, curves: Curves) -> list[RegisterLine]:
+def print_register(world: World, year: int, curves: Curves) -> list[RegisterLine]:
     """Return the register of that year by the practice of the day, faults included."""
     lines: list[RegisterLine] = []
     newest = _newest_tows(world, year)
@@ -63,7 +63,7 @@ def printed_register(world: World, year: int, curves: Curves) -> list[RegisterLi
     for crew in crews:
         tow = newest.get(crew, first[crew])
         valid = crew in newest and tow.season + VALID_YEARS >= year
-        a_kg_m, b_m_s = curves[tow.tow_id][practice_of(tow.season, year)] if valid else NO_CURVE
+        a_kg_m, b_m_s = curves[tow.tow_id][find_practice(tow.season, year)] if valid else NO_CURVE
         lines.append(
             RegisterLine(
                 tow.boat,

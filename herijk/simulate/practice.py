@@ -51,7 +51,7 @@ class Practice:
     temperature: bool = False
 
 
-def practice_of(season: int, printed_in: int) -> Practice:
+def find_practice(season: int, printed_in: int) -> Practice:
     """Return by which practice a register printed a tow; 2014 was recomputed in 2015."""
     if season <= 2013 or printed_in <= 2014:
         return Practice()
@@ -60,7 +60,7 @@ def practice_of(season: int, printed_in: int) -> Practice:
 
 def practices(season: int) -> tuple[Practice, ...]:
     """All by which a tow can have been printed."""
-    return tuple(dict.fromkeys(practice_of(season, year) for year in (season, season + 1)))
+    return tuple(dict.fromkeys(find_practice(season, year) for year in (season, season + 1)))
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class _Run:
     angle_rad: Floats
 
 
-def printed_curve(
+def print_curve(
     samples: pl.DataFrame, runs: Sequence[RunTruth], tow: Tow, practice: Practice
 ) -> tuple[float, float]:
     """Return A [kg/m] and B [m/s] by a practice."""

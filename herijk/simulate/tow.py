@@ -18,7 +18,7 @@ from herijk.simulate.instruments import (
     read_load_cell,
     read_logs,
 )
-from herijk.simulate.motion import RunTruth, true_runs
+from herijk.simulate.motion import RunTruth, simulate_runs
 from herijk.simulate.random_streams import Component, Subject, TowStreams
 from herijk.simulate.world import Tow, World
 from pipeline.channels import RUN_SECONDS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
@@ -47,7 +47,7 @@ def _simulate_file(
 ) -> tuple[pl.DataFrame, tuple[RunTruth, ...]]:
     defects = world.settings.defects(tow.season)
     streams = TowStreams(world.settings.seed, tow.season, tow.number, subject)
-    runs = true_runs(tow, defects, streams)
+    runs = simulate_runs(tow, defects, streams)
     count = round(RUN_SECONDS * world.settings.rate_hz)
     time_s = np.arange(count) / world.settings.rate_hz
     channels: dict[str, list[Samples]] = {name: [] for name in SAMPLE_SCHEMA}

@@ -19,7 +19,7 @@ from herijk.simulate.boats import (
     Shape,
     crew_kg,
     draw_boat,
-    loaded_hull,
+    load_hull,
     speed_at_power_m_s,
 )
 from herijk.simulate.defects import FIRST_SEASON, Defects
@@ -286,12 +286,12 @@ def _tow(
     weight_kg = float(round(boat.weight_kg * condition.weight))
     rowers = _rowers(boat, defects, draw(Component.EMPTY_THWART))
     on_board_kg = crew_kg(slot.crew_class, rowers)
-    hull = loaded_hull(boat, on_board_kg, weight_kg, condition.resistance)
+    hull = load_hull(boat, on_board_kg, weight_kg, condition.resistance)
     day = (slot.number - 1) // settings.tows_a_day
     day_rng = stream(settings.seed, Subject.DAY, slot.season, day)
     temperature_c = round(float(day_rng.uniform(*defects.water_temperature_c)), 1)
     listed = draw(Component.TEMPERATURE).random() >= defects.temperature_missing_share
-    declared = _declared_speed_m_s(settings, boat, slot.crew_class, rowers)
+    declared = _choose_declared_speed(settings, boat, slot.crew_class, rowers)
     declared = round(declared * _slowness(defects, draw(Component.SLOW)), 2)
 
     def cw(at_c: float) -> float:
@@ -375,9 +375,11 @@ def _freeboards_m(
     return lowest, bow, stern
 
 
-def _declared_speed_m_s(settings: WorldSettings, boat: Boat, crew_class: str, rowers: int) -> float:
+def _choose_declared_speed(
+    settings: WorldSettings, boat: Boat, crew_class: str, rowers: int
+) -> float:
     """Return the speed that asks the intended power of the boat as built; kept at later tows."""
-    as_built = loaded_hull(boat, crew_kg(crew_class, rowers), boat.weight_kg, condition=1.0)
+    as_built = load_hull(boat, crew_kg(crew_class, rowers), boat.weight_kg, condition=1.0)
     speed = speed_at_power_m_s(
         as_built,
         boat.target_power_w(crew_class),

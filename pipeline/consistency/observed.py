@@ -36,7 +36,7 @@ MIN_BEND: Final = 0.05
 """Least bend q at which errors of A and of the bend are taken."""
 
 
-def of_trusted(frame: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+def select_trusted(frame: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Return the rows by `tow_id` of tows that nothing is doubted about."""
     trusted = tows.filter(pl.col("doubts").list.len() == 0)
     return frame.join(trusted, on="tow_id", how="semi", maintain_order="left")
@@ -104,7 +104,7 @@ def observe_trusted(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> pl.DataFrame:
     """Return the rows of `observe` of tows that nothing is doubted about."""
-    return observe(of_trusted(curves, tows), tows, boats, of_trusted(run_points, tows))
+    return observe(select_trusted(curves, tows), tows, boats, select_trusted(run_points, tows))
 
 
 def _join_tows(curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:

@@ -356,7 +356,7 @@ def measure_noise(observed: pl.DataFrame, repeat_pairs: pl.DataFrame, quantity: 
     return estimate_noise(pairs.with_columns(difference=difference).sort("tow_id"))
 
 
-def with_logarithms(tows: pl.DataFrame) -> pl.DataFrame:
+def add_logarithms(tows: pl.DataFrame) -> pl.DataFrame:
     """Add ln Cw at the standard speed and ln A."""
     return tows.with_columns(
         ln_cw_standard=pl.col("cw_standard_kg_m").log(),
@@ -606,7 +606,7 @@ def compare_types(
     verdicts: list[Row] = []
     lines: list[Row] = []
     deviations = [pl.DataFrame(schema=DEVIATIONS)]
-    known = with_logarithms(observed).sort("method", "boat_type", "tow_id")
+    known = add_logarithms(observed).sort("method", "boat_type", "tow_id")
     for (method,), of_method in known.group_by("method", maintain_order=True):
         pairs = repeat_pairs.filter(method=method)
         for quantity in QUANTITIES:

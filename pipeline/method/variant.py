@@ -18,10 +18,10 @@ from pipeline.method.reading import (
 from pipeline.method.writing import (
     covered,
     key_lines,
-    method_text,
-    override_lines,
     range_text,
     step_lines,
+    write_method_text,
+    write_override_lines,
 )
 
 
@@ -105,7 +105,7 @@ def differences(method: Method, parent: Method) -> list[Difference]:
     return changed
 
 
-def variant_text(method: Method) -> str:
+def write_variant_text(method: Method) -> str:
     """Return the text of a method file that names only what differs from what it extends.
 
     A method that extends none is written out in full. Reading the text gives a method with the
@@ -115,7 +115,7 @@ def variant_text(method: Method) -> str:
         MethodFileError: the method it extends says nothing about one of its seasons.
     """
     if method.extends is None:
-        return method_text(method)
+        return write_method_text(method)
     head = key_lines(
         {
             "name": method.name,
@@ -133,7 +133,7 @@ def variant_text(method: Method) -> str:
     everywhere = changed.pop(covered(method), {})
     blocks = [_register_lines(method, parent)]
     blocks.append(["[steps]", *step_lines(everywhere)] if everywhere else [])
-    blocks += [override_lines(seasons, steps) for seasons, steps in changed.items()]
+    blocks += [write_override_lines(seasons, steps) for seasons, steps in changed.items()]
     return "\n\n".join("\n".join(block) for block in [head, *blocks] if block) + "\n"
 
 

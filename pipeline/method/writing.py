@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pipeline.method.definition import LAST_SEASON, Method
 
 
-def method_text(method: Method) -> str:
+def write_method_text(method: Method) -> str:
     """Return a method as TOML that stands alone: every option of every season, nothing inherited.
 
     Reading it gives a method with the same content hash and register rule.
@@ -29,7 +29,7 @@ def method_text(method: Method) -> str:
     ]
     for block in method.ranges:
         steps = block.steps.model_dump(mode="json", exclude_none=True)
-        lines += ["", *override_lines(range_text(block.first, block.last), steps)]
+        lines += ["", *write_override_lines(range_text(block.first, block.last), steps)]
     return "\n".join(lines) + "\n"
 
 
@@ -44,7 +44,7 @@ BEGINNING = """
 """
 
 
-def beginning_text(name: str, base: Method) -> str:
+def write_new_method_text(name: str, base: Method) -> str:
     """Return the text of a new method file that extends `base`, with its options as comments."""
     head = {
         "name": name,
@@ -61,7 +61,7 @@ def beginning_text(name: str, base: Method) -> str:
     return "\n".join([*key_lines(head), BEGINNING, *listed]) + "\n"
 
 
-def override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]]) -> list[str]:
+def write_override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]]) -> list[str]:
     """Return the lines of an `[[overrides]]` block."""
     return ["[[overrides]]", *key_lines({"range": range_of}), *step_lines(steps)]
 

@@ -16,7 +16,7 @@ BISECTIONS: Final = 60
 FASTEST_M_S: Final = 20.0
 
 
-def curve_of_lines(lines: pl.DataFrame, suffix: str = "") -> tuple[FloatArray, FloatArray]:
+def find_line_curves(lines: pl.DataFrame, suffix: str = "") -> tuple[FloatArray, FloatArray]:
     """Return A [kg/m] and s = 1/B^2 [s2/m2] of lines; without a B, s follows from A and Cw.
 
     Args:

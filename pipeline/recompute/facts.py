@@ -11,24 +11,24 @@ UNKNOWN_WEIGHT_LN_SD: Final = 0.2
 """Standard deviation of ln weight where too few tows have one to show it (inferred)."""
 
 
-def with_boat_types(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
+def add_boat_types(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tows` with the type of their boat."""
     return tows.join(
         boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left"
     )
 
 
-def with_boats(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
+def add_boats(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tows` with the type of their boat, and its length and breadth in the boat list."""
     listed = boats.select(
         "fsn_no",
         listed_length_m=pl.col("waterline_length_m"),
         listed_beam_m=pl.col("beam_m"),
     )
-    return with_boat_types(tows, boats).join(listed, on="fsn_no", how="left", maintain_order="left")
+    return add_boat_types(tows, boats).join(listed, on="fsn_no", how="left", maintain_order="left")
 
 
-def with_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
+def add_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tows` with what recorded temperatures say of the water of their day.
 
     `expected_water_c`: their mean on that day, else in that month of that year, else in that month,
@@ -44,7 +44,7 @@ def with_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def with_expected_mass(tows: pl.DataFrame) -> pl.DataFrame:
+def add_expected_mass(tows: pl.DataFrame) -> pl.DataFrame:
     """Return `tows` with the mass of boat and crew, as expected where a weight is not recorded.
 
     A boat weighs what it weighs in its other tows (median), else what boats of its type with as
@@ -80,7 +80,7 @@ def _expected_from_like_tows(column: str, groups: Iterable[list[str]]) -> tuple[
     return expected, pl.when(recorded.is_null()).then(ln_sd).otherwise(0.0)
 
 
-def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
+def add_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tow_runs` with the windows that were given by hand (`hand_windows`)."""
     given = windows.select("tow_id", "run", *HAND_COLUMNS).rename(HAND_COLUMNS)
     return runs.join(given, on=["tow_id", "run"], how="left", maintain_order="left")

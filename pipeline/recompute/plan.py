@@ -13,7 +13,7 @@ from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.blocks.tows import Tows
 from pipeline.method.definition import Method
 from pipeline.method.options import Calibration, Steps
-from pipeline.recompute.facts import with_expected_mass, with_expected_water
+from pipeline.recompute.facts import add_expected_mass, add_expected_water
 from pipeline.recompute.options import StepOptions
 from pipeline.recompute.run_cache import RunCache
 
@@ -47,8 +47,8 @@ class Plan:
         Raises:
             MissingKnowledgeError: the method says nothing about a season of `tows`.
         """
-        known = Tows.of(with_expected_water(tows), blocks)
-        known = replace(known, frame=with_expected_mass(known.frame))
+        known = Tows.of(add_expected_water(tows), blocks)
+        known = replace(known, frame=add_expected_mass(known.frame))
         seasons = known.frame["season"].to_list()
         has_gps = known.has_gps.tolist()
         of_tows = list(zip(seasons, has_gps, strict=True))
@@ -56,7 +56,7 @@ class Plan:
         place: dict[tuple[int, bool], int] = {}
         for season, gps in sorted(set(of_tows), key=lambda one: (one[0], not one[1])):
             steps = method.for_season(season)
-            own = steps if gps else without_gps(steps)
+            own = steps if gps else find_tows_without_gps(steps)
             place[season, gps] = place_of_group.setdefault((steps, own), len(place_of_group))
         return cls(
             tows=known,
@@ -93,7 +93,7 @@ class Plan:
         return replace(self, steps=tuple(change(steps) for steps in self.steps))
 
 
-def without_gps(steps: Steps) -> Steps:
+def find_tows_without_gps(steps: Steps) -> Steps:
     """Return the steps of a tow that has no GPS, where the method says what it then gets."""
     if not steps.estimates_without_gps:
         return steps
@@ -102,7 +102,7 @@ def without_gps(steps: Steps) -> Steps:
     return steps.model_copy(update={"speed": speed, "calibration": calibration})
 
 
-def without_factor(steps: Steps) -> Steps:
+def leave_out_factor(steps: Steps) -> Steps:
     """Return the steps from which log factors are estimated: with the log as it reads."""
     if steps.speed.correction != "estimated":
         return steps

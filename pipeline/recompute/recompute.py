@@ -25,7 +25,7 @@ from pipeline.recompute.computed import (
     SpeedCorrection,
     TemperatureCorrection,
 )
-from pipeline.recompute.plan import Plan, without_factor
+from pipeline.recompute.plan import Plan, leave_out_factor
 from pipeline.recompute.results import Recomputed, as_tables
 from pipeline.recompute.run_cache import RunCache
 from pipeline.recompute.season_factors import find_season_factors, instruments_of
@@ -84,7 +84,7 @@ def estimate_season_factors(plan: Plan) -> SeasonFactors | None:
     Returns:
         None if not a single tow has a curve from which to estimate.
     """
-    as_read = evaluate(plan.with_steps(without_factor))
+    as_read = evaluate(plan.with_steps(leave_out_factor))
     if not (np.isfinite(as_read.cw_at_declared) & as_read.tows.trusted).any():
         return None
     return find_season_factors(as_read)

@@ -49,7 +49,7 @@ def find_season_factors(c: Computed) -> SeasonFactors:
     low would be compared at the edge of what was towed, and all would hang on the bend.
 
     Args:
-        c: all tows under `without_factor`.
+        c: all tows under `leave_out_factor`.
     """
     first = first_estimate(make_observations(c, {}))
     tow_id = first.fit.model.archive.frame["tow_id"]
@@ -90,7 +90,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     """Return the rows that `estimate_season_factors` takes, of tows with a sound curve.
 
     Args:
-        c: all tows under `without_factor`.
+        c: all tows under `leave_out_factor`.
         ln_factor: what is known of the ln factor of each tow's log.
     """
     tows = c.tows

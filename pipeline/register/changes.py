@@ -16,7 +16,7 @@ from pipeline.arrays import FloatArray
 from pipeline.assessment.seen import POWER_W
 from pipeline.choice import SAME_SHARE
 from pipeline.curve import VALID_RATIO, cw
-from pipeline.races.power import curve_of_lines, speed_at_power
+from pipeline.races.power import find_line_curves, speed_at_power
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import LINE
 from pipeline.tables.frames import dtypes
@@ -104,8 +104,8 @@ def compare_lines(
     )
     in_both = (pairs["cw_kg_m"].is_not_null() & pairs["cw_kg_m_new"].is_not_null()).to_numpy()
     speed = pairs["declared_speed_m_s"].fill_null(1.0).to_numpy()
-    old_curve = _fill_curve(*curve_of_lines(pairs))
-    new_curve = _fill_curve(*curve_of_lines(pairs, "_new"))
+    old_curve = _fill_curve(*find_line_curves(pairs))
+    new_curve = _fill_curve(*find_line_curves(pairs, "_new"))
 
     def ratio_at(share: float) -> FloatArray:
         ratio = cw(*new_curve, share * speed) / cw(*old_curve, share * speed)
@@ -185,7 +185,7 @@ def _rank(register: pl.DataFrame) -> pl.DataFrame:
     """Lines with a curve, and their rank by speed at equal power within the class."""
     lines = register.drop_nulls("cw_kg_m").select(*LINE, *COMPARED)
     power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64) * lines["rowers"]
-    speed = pl.Series("speed", speed_at_power(*curve_of_lines(lines), power.to_numpy()))
+    speed = pl.Series("speed", speed_at_power(*find_line_curves(lines), power.to_numpy()))
     rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
     return lines.with_columns(speed).with_columns(rank=rank).drop("speed")
 

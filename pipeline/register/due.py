@@ -12,7 +12,7 @@ import polars as pl
 
 from pipeline.assessment.checks import CHECK
 from pipeline.curve import VALID_RATIO
-from pipeline.races.power import curve_of_lines, speed_at_power
+from pipeline.races.power import find_line_curves, speed_at_power
 from pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from pipeline.register.register import LINE
 
@@ -68,8 +68,8 @@ def due_list(
         .sort(LINE)
     )
     own = lines.filter(pl.col("a_kg_m").is_not_null())
-    known = own.with_columns(_powers(own)).with_columns(_of_own_curve())
-    without = _of_like_boats(lines.join(own, on=LINE, how="anti"), known)
+    known = own.with_columns(_powers(own)).with_columns(_find_speed_of_own_curve())
+    without = _find_speed_of_like_boats(lines.join(own, on=LINE, how="anti"), known)
     low, high = (pl.col("declared_speed_m_s") * ratio for ratio in VALID_RATIO)
     return (
         pl.concat([known, without], how="diagonal_relaxed")
@@ -97,7 +97,7 @@ def _raced(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
 
 def _powers(lines: pl.DataFrame) -> list[pl.Series]:
     """Power at the declared speed, and the speeds at both ends of the realistic range."""
-    a, s = curve_of_lines(lines)
+    a, s = find_line_curves(lines)
     rowers = lines["rowers"].to_numpy()
     power = power_per_rower_w(lines["cw_kg_m"], lines["declared_speed_m_s"], rowers)
     ends = {}
@@ -107,7 +107,7 @@ def _powers(lines: pl.DataFrame) -> list[pl.Series]:
     return [pl.Series("power_w", power), *(pl.Series(n, v) for n, v in ends.items())]
 
 
-def _of_own_curve() -> list[pl.Expr]:
+def _find_speed_of_own_curve() -> list[pl.Expr]:
     """Speed of the next tow by the boat's own curve, and why."""
     declared, raced = pl.col("declared_speed_m_s"), pl.col("raced_speed_m_s")
     lowest, highest = pl.col("lowest_speed_m_s"), pl.col("highest_speed_m_s")
@@ -125,7 +125,7 @@ def _of_own_curve() -> list[pl.Expr]:
     return [speed.alias("tow_speed_m_s"), reason.alias("speed_reason")]
 
 
-def _of_like_boats(lines: pl.DataFrame, known: pl.DataFrame) -> pl.DataFrame:
+def _find_speed_of_like_boats(lines: pl.DataFrame, known: pl.DataFrame) -> pl.DataFrame:
     """Medians of boats of the same type and crew, for lines without a curve."""
     like = ["boat_type", "rowers", "crew_class"]
     ends = ("lowest_speed_m_s", "highest_speed_m_s")

@@ -63,7 +63,7 @@ DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
 NO_DECISIONS: Final = pl.DataFrame(schema=DECISION_SCHEMA)
 
 
-def with_empty_thwart(lines: pl.DataFrame) -> pl.DataFrame:
+def add_empty_thwart(lines: pl.DataFrame) -> pl.DataFrame:
     """Lines that were made before they said which thwart was left free."""
     if "empty_thwart" in lines.columns:
         return lines
@@ -131,7 +131,7 @@ def draft_register(
         decision, and there is no other tow.
     """
     made_by_then = tows.filter(pl.col("tow_date") <= on_date)
-    towed = _towed(as_ruled(curves, rule), made_by_then)
+    towed = _towed(apply_rule(curves, rule), made_by_then)
     curved = towed.filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
     history = lines_of_all_days(curves, made_by_then, rule, decisions, carried)
@@ -172,10 +172,10 @@ def lines_of_all_days(
         `LINE` and `CURVE_COLUMNS` of every tow that can count, in such an order that on any day the
         last one counts whose `tow_date` is not after it.
     """
-    curved = _towed(as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
+    curved = _towed(apply_rule(curves, rule), tows).filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
-    is_preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
+    allowed = sound.join(_add_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
+    is_preferred = pl.col("tow_id").is_in(_add_verdict(decisions, PREFER)["tow_id"].implode())
     until = valid_until(pl.col("tow_date"), rule).alias("valid_until")
     lines = allowed.with_columns(until, basis=pl.lit(MEASURED), is_preferred=is_preferred)
     if carried is not None:
@@ -253,7 +253,7 @@ def flag_unmeasured(
     """
     newer = unmeasured.select(*LINE, unmeasured_on="tow_date")
     joined = lines.join(newer, on=LINE, how="left", maintain_order="left")
-    preferred = _with_verdict(decisions, PREFER)["tow_id"].to_list()
+    preferred = _add_verdict(decisions, PREFER)["tow_id"].to_list()
     is_older = (
         (pl.col("status") == "valid")
         & (pl.col("tow_date") < pl.col("unmeasured_on"))
@@ -277,10 +277,10 @@ def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
     if "doubts" not in tows.columns:
         return tows.clear()
     doubted = tows.filter(pl.col("doubts").list.len() > 0)
-    return doubted.join(_with_verdict(decisions, PREFER), on="tow_id", how="anti")
+    return doubted.join(_add_verdict(decisions, PREFER), on="tow_id", how="anti")
 
 
-def as_ruled(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
+def apply_rule(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
     """Curves with the estimate that the rule asks for; A follows Cw, B stays."""
     if rule.estimate == "as_measured":
         return curves
@@ -293,5 +293,5 @@ def as_ruled(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
     )
 
 
-def _with_verdict(decisions: pl.DataFrame, verdict: str) -> pl.DataFrame:
+def _add_verdict(decisions: pl.DataFrame, verdict: str) -> pl.DataFrame:
     return decisions.filter(pl.col("verdict") == verdict)

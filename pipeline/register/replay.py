@@ -14,7 +14,7 @@ import polars as pl
 
 from pipeline.arrays import FloatArray
 from pipeline.curve import VALID_RATIO, cw
-from pipeline.races.power import curve_of_lines
+from pipeline.races.power import find_line_curves
 from pipeline.races.race import fatigue_factor, mean_speed_m_s, power_per_rower_w
 from pipeline.register.register import LINE, NO_EMPTY_THWART
 
@@ -70,7 +70,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     rowed = _with_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
     through_water = rowed["distance_m"] - rowed["stream_m"].fill_null(0.0)
     speed = mean_speed_m_s(through_water, rowed["rowing_time_s"])
-    a, s = curve_of_lines(rowed)
+    a, s = find_line_curves(rowed)
     resistance = cw(np.nan_to_num(a), np.nan_to_num(s), speed)
     has_line = np.isfinite(a)
     sound = has_line & np.isfinite(resistance)

@@ -21,8 +21,8 @@ from pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from pipeline.steps.wind import (
     AirParts,
     air_parts,
+    average_wind,
     mean_angle_deg,
-    with_averaged_wind,
 )
 from pipeline.steps.window import END_SECONDS, Windows, robust_moments
 
@@ -94,7 +94,7 @@ def window_means(
         The means by `SUM_NAMES`, and as `seconds_sd` the standard deviation of the means of
         F / v^2 per second.
     """
-    averaged = with_averaged_wind(blocks, averaging_s) if averaging_s else blocks
+    averaged = average_wind(blocks, averaging_s) if averaging_s else blocks
     sums = WindowSums(averaged, windows.mask)
     weighted = set(SUM_NAMES) - SCATTER_SUMS if is_robust else set()
     means = {name: sums.mean(name) for name in SUM_NAMES if name not in weighted}

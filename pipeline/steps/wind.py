@@ -98,7 +98,7 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
     return dict(zip(AIR_SUMS, terms, strict=True))
 
 
-def with_averaged_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
+def average_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
     """Return the blocks with the sums of their air terms as `averaged_terms` gives them."""
     terms = averaged_terms(blocks, averaging_s)
 

@@ -109,7 +109,7 @@ class Windows:
         }
 
 
-def whole_runs(blocks: RunBlocks) -> Windows:
+def take_whole_runs(blocks: RunBlocks) -> Windows:
     """Return windows that hold all of every run; runs without any block have none."""
     return describe_windows(blocks, blocks.inside, ("",) * len(blocks.n))
 

@@ -71,7 +71,7 @@ def ladder(
             rungs.append(rungs[-1])
         else:
             rungs.append(evaluate(plan, of_new if count else of_old))
-    return _with_factors(rungs).sort("tow_id", "position")
+    return _add_factors(rungs).sort("tow_id", "position")
 
 
 def _instruments(plan: Plan) -> pl.DataFrame | None:
@@ -92,7 +92,7 @@ def _mixed(old: Plan, new: Plan, count: int) -> Plan:
     return Plan(old.tows, steps, which.ravel(), old.cache)
 
 
-def _with_factors(rungs: list[Computed]) -> pl.DataFrame:
+def _add_factors(rungs: list[Computed]) -> pl.DataFrame:
     """Return what each rung makes of every tow, and its factor on the one before."""
     cw = np.stack([one.cw_at_declared for one in rungs])
     sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])

@@ -11,7 +11,7 @@ import polars as pl
 
 from pipeline.curve import cw
 from pipeline.method.definition import Method
-from pipeline.races.power import curve_of_lines
+from pipeline.races.power import find_line_curves
 from pipeline.tables.keys import LINE
 
 
@@ -77,7 +77,7 @@ def print_reproduction(
         )
         .join(of_tow, on="tow_id", maintain_order="left")
     )
-    there = cw(*curve_of_lines(compared), compared["speed_m_s"])
+    there = cw(*find_line_curves(compared), compared["speed_m_s"])
     known = pl.when(pl.Series(there).is_finite()).then(pl.Series(there))
     return (
         compared.with_columns(known.alias("cw_kg_m"))

@@ -25,7 +25,7 @@ from pipeline.tables import (
 from pipeline.tables.declare import dy
 
 
-def _declared_in(*modules: ModuleType) -> dict[str, type[dy.Schema]]:
+def _collect_tables(*modules: ModuleType) -> dict[str, type[dy.Schema]]:
     """Return the tables of modules by name: that of the class, in snake case."""
     return {
         re.sub("(?<!^)(?=[A-Z])", "_", name).lower(): declared
@@ -36,7 +36,7 @@ def _declared_in(*modules: ModuleType) -> dict[str, type[dy.Schema]]:
     }
 
 
-TABLES: Final = _declared_in(
+TABLES: Final = _collect_tables(
     archive, runs, curves, season_log, register, editions, studies, consistency
 )
 """Every class of these modules but those that begin with an underscore, which tables inherit."""
@@ -47,11 +47,11 @@ STUDY: Final = (
 )
 """Tables that studies and pages work with: in the database they are in the schema `study`."""
 
-ABOUT: Final = _declared_in(about)
+ABOUT: Final = _collect_tables(about)
 """Tables of the database about itself."""
 
 
-def summary_of(schema: type[dy.Schema]) -> str:
+def summarize_table(schema: type[dy.Schema]) -> str:
     """Return what a table holds, in one sentence; its Dutch is among the texts."""
     return cleandoc(schema.__doc__ or "").partition("\n")[0]
 

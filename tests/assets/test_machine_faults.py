@@ -26,7 +26,7 @@ from tests.assets.test_rebuild import (
 )
 from tests.conftest import METHODS
 from warehouse.intake.lake import ArchiveChangedError
-from warehouse.store.machine_faults import machine_faults_explained
+from warehouse.store.machine_faults import explain_machine_faults
 from warehouse.store.store import Store
 
 ROOT = Path(__file__).parents[2]
@@ -79,7 +79,7 @@ def test_a_full_disk_leaves_the_old_tables_and_the_next_run_goes_on(bench, built
     ],
 )
 def test_each_machine_fault_is_a_sentence_with_a_way_out(error, words, tmp_path):
-    with pytest.raises(UnavailableError) as told, machine_faults_explained(tmp_path):
+    with pytest.raises(UnavailableError) as told, explain_machine_faults(tmp_path):
         raise RuntimeError("wrapped") from error
     assert words in str(told.value)
     assert "Earlier results are intact" in str(told.value)
@@ -87,7 +87,7 @@ def test_each_machine_fault_is_a_sentence_with_a_way_out(error, words, tmp_path)
 
 def test_sqlite_calls_a_full_disk_one_that_gives_errors(tmp_path, monkeypatch):
     monkeypatch.setattr(shutil, "disk_usage", lambda _: mock.Mock(free=1000))
-    with pytest.raises(UnavailableError, match="no room left"), machine_faults_explained(tmp_path):
+    with pytest.raises(UnavailableError, match="no room left"), explain_machine_faults(tmp_path):
         raise sqlite3.OperationalError("disk I/O error")
 
 

@@ -13,7 +13,7 @@ import warehouse.intake.reading
 from assets.report import Done
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from tests.conftest import METHODS, SMALL, STUDIES, Workbench
-from warehouse.store.store import table_digest
+from warehouse.store.store import digest_table
 
 TOWS_2009 = "sleeplijsten/sleeplijst_2009.csv"
 ONE = METHODS[:1]
@@ -166,7 +166,7 @@ def test_made_elsewhere_season_by_season_the_tables_are_the_same(
     assert len(files_read) == 2 * SMALL.tows_per_season
     found = without_studies(elsewhere.tables())
     for name, frame in without_studies(built.tables()).items():
-        assert table_digest(found[name]) == table_digest(frame), name
+        assert digest_table(found[name]) == digest_table(frame), name
 
 
 def test_one_method_gives_one_methods_rows(bench, built, files_read):

@@ -11,7 +11,7 @@ import pytest
 
 from tests.conftest import METHODS, SMALL, Workbench
 from tests.herijk.conftest import hold_against_form
-from warehouse.store.store import table_digest
+from warehouse.store.store import digest_table
 
 ROOT = Path(__file__).parents[2]
 THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")
@@ -42,7 +42,7 @@ def test_a_fresh_process_with_other_threads_gives_the_same_tables(built: Workben
     assert made.keys() == built.tables().keys()
     for name, frame in built.tables().items():
         days = [c for c in frame.columns if c == "first_seen"]  # the day is not the archive's
-        assert table_digest(made[name].drop(days)) == table_digest(frame.drop(days)), name
+        assert digest_table(made[name].drop(days)) == digest_table(frame.drop(days)), name
 
 
 STOPPED = """

@@ -15,10 +15,10 @@ PLAIN = {
 }
 
 
-def method_text(name: str = "test", **steps: str) -> str:
+def write_method_text(name: str = "test", **steps: str) -> str:
     lines = [f"{step} = {options}" for step, options in (PLAIN | steps).items()]
     return "\n".join([f'name = "{name}"', 'title = "Test"', "[steps]", *lines]) + "\n"
 
 
 def method(name: str = "test", **steps: str) -> Method:
-    return parse_method(method_text(name, **steps), f"{name}.toml")
+    return parse_method(write_method_text(name, **steps), f"{name}.toml")

@@ -13,10 +13,10 @@ from pipeline.method.reading import (
     parse_method,
     read_shipped_method,
 )
-from tests.pipeline.methods import PLAIN, method_text
+from tests.pipeline.methods import PLAIN, write_method_text
 
 LINE_OF = {step: number for number, step in enumerate(PLAIN, 4)}
-"""Line of each step in `method_text`: name, title and [steps] come first."""
+"""Line of each step in `write_method_text`: name, title and [steps] come first."""
 
 
 def parse(text: str, **others: str):
@@ -29,26 +29,26 @@ def parse(text: str, **others: str):
 
 
 def changed(step: str, options: str) -> str:
-    return method_text(**{step: options})
+    return write_method_text(**{step: options})
 
 
 def with_override(text: str, range_text: str = '"2010:2012"') -> str:
-    return method_text() + f"[[overrides]]\nrange = {range_text}\n{text}\n"
+    return write_method_text() + f"[[overrides]]\nrange = {range_text}\n{text}\n"
 
 
-FIRST_OVERRIDE = len(method_text().splitlines()) + 1
+FIRST_OVERRIDE = len(write_method_text().splitlines()) + 1
 
 WRONG = {
     "no TOML": ("name = \n", ["own.toml", "line 1", "not valid TOML"]),
-    "name with capitals": (method_text("Own"), ["line 1", "name", "'Own'"]),
+    "name with capitals": (write_method_text("Own"), ["line 1", "name", "'Own'"]),
     "unknown key at the top": (
-        'titel = "x"\n' + method_text(), ["line 1", "titel", "unknown key", "title", "overrides"],
+        'titel = "x"\n' + write_method_text(), ["line 1", "titel", "unknown key", "title", "overrides"],
     ),
     "unknown step": (
-        method_text(winds="{}"), [f"line {len(PLAIN) + 4}", "winds", "unknown step", "wind", "curve"],
+        write_method_text(winds="{}"), [f"line {len(PLAIN) + 4}", "winds", "unknown step", "wind", "curve"],
     ),
     "missing step": (
-        "\n".join(li for li in method_text().splitlines() if not li.startswith("curve")),
+        "\n".join(li for li in write_method_text().splitlines() if not li.startswith("curve")),
         ["own.toml", "curve.b", "missing", "2009"],
     ),
     "unknown key": (
@@ -88,9 +88,9 @@ WRONG = {
         ["wind.ahead", "twice", "season 2012", "overlap"],
     ),
     "unknown parent": (
-        'extends = "parent"\n' + method_text(), ["line 1", "extends", "there is no method 'parent'"],
+        'extends = "parent"\n' + write_method_text(), ["line 1", "extends", "there is no method 'parent'"],
     ),
-    "its own parent": ('extends = "test"\n' + method_text(), ["line 1", "extends", "itself", "test"]),
+    "its own parent": ('extends = "test"\n' + write_method_text(), ["line 1", "extends", "itself", "test"]),
 }  # fmt: skip
 
 
@@ -110,7 +110,9 @@ def test_every_error_says_where_what_and_what_is_allowed(case):
 
 
 def test_a_circle_over_two_files_is_found():
-    one, two = (f'extends = "{o}"\n' + method_text(n) for n, o in (("one", "two"), ("two", "one")))
+    one, two = (
+        f'extends = "{o}"\n' + write_method_text(n) for n, o in (("one", "two"), ("two", "one"))
+    )
     with pytest.raises(MethodFileError, match="one > two > one"):
         parse(one, one=one, two=two)
 
@@ -122,7 +124,7 @@ def test_an_error_in_the_parent_names_the_parents_file():
 
 
 def test_a_child_takes_all_and_replaces_what_it_names():
-    parent = method_text(wind='{ model = "head", ahead = 0.5, behind = 0.7 }')
+    parent = write_method_text(wind='{ model = "head", ahead = 0.5, behind = 0.7 }')
     child = (
         'name = "own"\ntitle = "x"\nextends = "parent"\n[steps]\nwind = { ahead = 0.4 }\n'
         '[[overrides]]\nrange = "2012:2013"\nwind = { behind = 0.6 }\n'
@@ -136,7 +138,7 @@ def test_a_child_takes_all_and_replaces_what_it_names():
 
 
 def test_a_season_before_the_first_is_missing_knowledge():
-    made = parse(method_text().replace("title =", 'seasons = "2012:2016"\ntitle ='))
+    made = parse(write_method_text().replace("title =", 'seasons = "2012:2016"\ntitle ='))
     for season in (2011, 2017):
         with pytest.raises(MissingKnowledgeError, match=rf"{season}.*2012 to 2016"):
             made.for_season(season)
@@ -163,15 +165,15 @@ SAME_RESULT = {
 
 @pytest.mark.parametrize("case", SAME_RESULT)
 def test_the_hash_stays_when_results_do(case):
-    text = SAME_RESULT[case](method_text())
-    assert text != method_text()
-    assert parse(text).content_hash == parse(method_text()).content_hash
+    text = SAME_RESULT[case](write_method_text())
+    assert text != write_method_text()
+    assert parse(text).content_hash == parse(write_method_text()).content_hash
 
 
 def test_extending_gives_the_hash_of_the_same_written_out():
     child = 'name = "own"\ntitle = "x"\nextends = "parent"\n[steps]\nwind = { model = "head" }\n'
-    written_out = method_text(wind='{ model = "head", ahead = 0, behind = 0, side = 0 }')
-    assert parse(child, parent=method_text()).content_hash == parse(written_out).content_hash
+    written_out = write_method_text(wind='{ model = "head", ahead = 0, behind = 0, side = 0 }')
+    assert parse(child, parent=write_method_text()).content_hash == parse(written_out).content_hash
 
 
 OTHER_RESULT = {
@@ -191,15 +193,15 @@ OTHER_RESULT = {
 @pytest.mark.parametrize("step", OTHER_RESULT)
 def test_the_hash_changes_with_any_option(step):
     other = parse(changed(step, OTHER_RESULT[step]))
-    assert other.content_hash != parse(method_text()).content_hash
+    assert other.content_hash != parse(write_method_text()).content_hash
 
 
 def test_the_hash_changes_with_one_season_of_an_override_and_with_the_seasons_covered():
     texts = (
-        method_text(),
+        write_method_text(),
         with_override("wind = { ahead = 0.4 }"),
         with_override("wind = { ahead = 0.4 }", '"2010:2011"'),
-        method_text().replace("title =", 'seasons = "2009:2016"\ntitle ='),
+        write_method_text().replace("title =", 'seasons = "2009:2016"\ntitle ='),
     )
     assert len({parse(text).content_hash for text in texts}) == len(texts)
 

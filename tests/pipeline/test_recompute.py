@@ -14,11 +14,11 @@ from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.blocks.tows import Tows
 from pipeline.method.reading import read_shipped_method
-from pipeline.recompute.facts import with_expected_mass, with_expected_water
+from pipeline.recompute.facts import add_expected_mass, add_expected_water
 from pipeline.recompute.recompute import recompute
 from pipeline.steps.target import above_target
 from tests.pipeline.methods import method
-from tests.worlds import Measured, measure, run_rows, tow_rows, without_gps, without_wind
+from tests.worlds import Measured, find_tows_without_gps, measure, run_rows, tow_rows, without_wind
 
 SETTINGS = WorldSettings((2010, 2012, 2015), 10, 20, 11)
 RHO = 1.225
@@ -247,7 +247,7 @@ def test_without_gps_nothing_is_calibrated_and_the_tow_says_so(measured):
 
 def test_a_tow_without_gps_gets_the_factor_of_its_log_from_the_other_tows(measured):
     marked = (measured.tows["tow_id"].is_in(["2015-001", "2015-004", "2015-007"])).to_numpy()
-    world = without_gps(measured, marked)
+    world = find_tows_without_gps(measured, marked)
     made, with_gps = (
         recompute(read_shipped_method("rebased"), w.tows, w.blocks) for w in (world, measured)
     )
@@ -285,7 +285,7 @@ def test_water_that_nobody_measured_is_as_warm_as_other_tows_say(measured):
     tows = measured.tows.with_columns(water_temperature_c=water.set(pl.Series(lost), None))
     said, unsaid = (recompute(rebased, t, measured.blocks) for t in (measured.tows, tows))
     moved = (unsaid.curves["cw_kg_m"] / said.curves["cw_kg_m"]).log().to_numpy()[lost]
-    expected = with_expected_water(tows)["expected_water_c"]
+    expected = add_expected_water(tows)["expected_water_c"]
     assert moved == pytest.approx(0.003 * (expected - water).to_numpy()[lost], abs=0.003)
     assert expected.to_numpy()[lost] == pytest.approx(np.mean(water.to_numpy()[~lost]), abs=3.0)
     budget = unsaid.uncertainty_budget.filter(component="temperature")
@@ -296,7 +296,7 @@ def test_water_is_expected_of_the_nearest_days_that_have_a_record():
     days = ((2014, 3, 1), (2014, 3, 1), (2014, 3, 9), (2016, 3, 2), (2016, 5, 1), (2015, 4, 1))
     water = [4.0, None, None, None, 12.0, None]
     tows = pl.DataFrame({"tow_date": [date(*d) for d in days], "water_temperature_c": water})
-    expected = with_expected_water(tows)["expected_water_c"].to_list()
+    expected = add_expected_water(tows)["expected_water_c"].to_list()
     assert expected == [4.0, 4.0, 4.0, 4.0, 12.0, 8.0]
 
 
@@ -311,7 +311,7 @@ def test_a_mass_is_expected_of_the_boats_own_tows_then_of_its_type_then_of_its_c
             "crew_weight_kg": [700.0, None, None, 720.0, 740.0, 740.0, 480.0],
         }
     )
-    found = with_expected_mass(tows)
+    found = add_expected_mass(tows)
     of_type = float(np.median([1000.0, 1100.0, 1300.0]))
     of_six = float(np.median([1000.0, 1100.0, 1300.0])) / 8 * 6
     expected = [1700.0, 1800.0, 1750.0, 2020.0, of_type + 740.0, of_type + 740.0, of_six + 480.0]

@@ -112,8 +112,8 @@ def test_an_interval_is_the_sum_of_repeat_tows_gps_and_what_is_assumed():
     parts = ("repeat_tows_sd", "gps_sd", "assumed_sd")
     squares = found.factors.select(pl.sum_horizontal(pl.col(*parts) ** 2)).to_series()
     assert squares.to_numpy() == pytest.approx((found.factors["ln_sd"] ** 2).to_numpy())
-    without_gps = world.tows.with_columns(gps_ln_ratio=pl.lit(None, pl.Float64))
-    assert estimate_season_factors(without_gps).factors["gps_sd"].max() < 1e-6
+    find_tows_without_gps = world.tows.with_columns(gps_ln_ratio=pl.lit(None, pl.Float64))
+    assert estimate_season_factors(find_tows_without_gps).factors["gps_sd"].max() < 1e-6
     alone = estimate_season_factors(renamed(world.tows, pl.col("season") == 2012)).factors
     row = alone.row(by_predicate=pl.col("season") == 2012, named=True)
     assert row["source"] == "gps"

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from pipeline.arrays import FloatArray
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.steps.window import HAND_COLUMNS, Windows, steady_windows, whole_runs
+from pipeline.steps.window import HAND_COLUMNS, Windows, steady_windows, take_whole_runs
 
 SECONDS = 50
 SAMPLES = 20
@@ -146,7 +146,7 @@ def test_speed_that_rises_all_the_time_leaves_no_window(rise: float):
 
 def test_a_run_shorter_than_the_minimum_has_no_window_but_may_count_whole():
     runs = blocks_of([Run(0), Run(29), Run(30), Run()])
-    found, whole = steady_windows(runs), whole_runs(runs)
+    found, whole = steady_windows(runs), take_whole_runs(runs)
     assert_none(found, run=1)
     assert found.end_s.tolist() == [0, 0, 30, SECONDS]
     assert_none(whole, run=0)
@@ -205,4 +205,4 @@ def test_a_window_given_by_hand_holds_whatever_the_rule_would_cut_if_it_is_long_
     assert found.start_s.tolist() == [0, 0, 0, 5]
     assert found.end_s.tolist() == [45, SECONDS, 0, 35]
     assert found.reasons == ("by_hand: zwaan", "", "by_hand: kort", "by_hand: net")
-    assert whole_runs(blocks).end_s.tolist() == 4 * [SECONDS]
+    assert take_whole_runs(blocks).end_s.tolist() == 4 * [SECONDS]

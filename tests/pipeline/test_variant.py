@@ -5,7 +5,7 @@ import pytest
 from pipeline.method.definition import SeasonSteps
 from pipeline.method.options import Steps
 from pipeline.method.reading import MethodFileError, parse_method, read_shipped_method
-from pipeline.method.variant import cut_at, differences, variant, variant_text
+from pipeline.method.variant import cut_at, differences, variant, write_variant_text
 
 SEASONS = range(2009, 2019)
 
@@ -31,7 +31,7 @@ def test_ranges_are_cut_where_a_season_or_a_range_begins():
 def test_a_change_of_all_seasons_is_one_line():
     base = read_shipped_method("rebased")
     made = variant(base, "own", "Mijn", "omdat", changed(base, "runs", "highest_target_ratio", 1.3))
-    assert variant_text(made) == (
+    assert write_variant_text(made) == (
         'name = "own"\ntitle = "Mijn"\ndescription = "omdat"\nextends = "rebased"\n'
         'seasons = "2009:"\n\n[steps]\nruns = { highest_target_ratio = 1.3 }\n'
     )
@@ -53,7 +53,7 @@ def test_a_variant_of_a_file_extends_what_the_file_extends():
     )
     base = parse_method(text, "mine.toml")
     made = variant(base, "own", "t", "", changed(base, "wind", "ahead", 0.4))
-    written = variant_text(made)
+    written = write_variant_text(made)
     for said in ('extends = "rebased"', "valid_years = 3", "wind = { ahead = 0.4, side = 0.3 }"):
         assert said in written
     assert parse_method(written, "own.toml") == made

@@ -9,7 +9,7 @@ from dashboards.workbench.form import CONTROLS as OF_MODEL
 from pipeline.method.definition import SeasonSteps
 from pipeline.method.options import Steps
 from pipeline.method.reading import list_shipped_methods, parse_method, read_shipped_method
-from pipeline.method.variant import cut_at, differences, variant, variant_text
+from pipeline.method.variant import cut_at, differences, variant, write_variant_text
 
 SEASONS = range(2008, 2020)
 CONTROLS = [(one.step, one) for one in OF_MODEL.values()]
@@ -55,14 +55,14 @@ def variants(draw):
 @given(variants())
 def test_a_file_reads_back_as_the_method_that_was_written(made):
     _, method = made
-    read = parse_method(variant_text(method), "own.toml")
+    read = parse_method(write_variant_text(method), "own.toml")
     assert read == method
 
 
 @given(variants())
 def test_a_file_names_only_what_differs(made):
     base, method = made
-    text = tomllib.loads(variant_text(method))
+    text = tomllib.loads(write_variant_text(method))
     assert text["extends"] == base.name
     named = {(step, option) for step, held in text.get("steps", {}).items() for option in held}
     for block in text.get("overrides", []):

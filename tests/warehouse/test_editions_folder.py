@@ -7,7 +7,7 @@ import pytest
 
 from pipeline.errors import BrokenPromiseError
 from warehouse.store.editions import edition_names, write_folder
-from warehouse.store.files import folder_written_beside
+from warehouse.store.files import write_folder_beside
 from warehouse.store.store import Store
 
 CONTENTS = {f"file-{n}": bytes([n]) * 5000 for n in range(6)}
@@ -87,7 +87,7 @@ def test_a_folder_is_replaced_whole_and_after_an_error_the_older_one_is_there(tm
     page = tmp_path / "site" / "page.html"
 
     def write(text, error=None):
-        with folder_written_beside(page.parent) as beside:
+        with write_folder_beside(page.parent) as beside:
             (beside / page.name).write_text(text, encoding="utf-8")
             if error:
                 raise error

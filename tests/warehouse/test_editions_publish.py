@@ -107,7 +107,7 @@ def test_an_edition_holds_what_the_rebuild_made(published, name):
 
 
 def csv_rows(register):
-    text = sheets.csv_bytes(register, sheets.REGISTER_FIELDS).decode("utf-8-sig")
+    text = sheets.encode_csv(register, sheets.REGISTER_FIELDS).decode("utf-8-sig")
     return list(csv.DictReader(io.StringIO(text, newline=""), delimiter=";"))
 
 

@@ -17,7 +17,7 @@ from tests.warehouse.edition_bench import DAY, terms
 from warehouse.editions.lineage import lineage
 from warehouse.editions.publish import publish_printed
 from warehouse.editions.verify import differences, verify
-from warehouse.store.editions import chain_head, manifest_path, read_edition, read_manifest
+from warehouse.store.editions import chain_head, find_manifest, read_edition, read_manifest
 from warehouse.store.files import file_sha256
 
 
@@ -200,7 +200,7 @@ def sealed_anew(path, *more, **said):
     """The hashes of what lies there now, under a new seal, with what else it says of itself."""
     files = {file: file_sha256(path / file) for file in (*read_manifest(path).files, *more)}
     manifest = read_manifest(path).model_copy(update={"files": files} | said).sealed()
-    manifest_path(path).write_text(manifest.model_dump_json(), encoding="utf-8")
+    find_manifest(path).write_text(manifest.model_dump_json(), encoding="utf-8")
 
 
 def rewritten(path, table, **columns):

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from pipeline.errors import UnavailableError
-from warehouse.store.lock import only_writer
+from warehouse.store.lock import hold_write_lock
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from warehouse.store.lock import only_writer
-with only_writer(Path(sys.argv[1])):
+from warehouse.store.lock import hold_write_lock
+with hold_write_lock(Path(sys.argv[1])):
     (Path(sys.argv[1]) / "lake").mkdir(exist_ok=True)
     (Path(sys.argv[1]) / "lake" / ".herijk-half.parquet").write_text("half")
     print("held", flush=True)
@@ -38,7 +38,7 @@ def holder(tmp_path):
 
 
 def test_the_second_stops_and_touches_nothing(holder, tmp_path):
-    with pytest.raises(UnavailableError, match="being rebuilt already"), only_writer(tmp_path):
+    with pytest.raises(UnavailableError, match="being rebuilt already"), hold_write_lock(tmp_path):
         pass
     assert (tmp_path / "lake" / ".herijk-half.parquet").exists()
 
@@ -46,7 +46,7 @@ def test_the_second_stops_and_touches_nothing(holder, tmp_path):
 def test_the_lock_dies_with_its_owner_and_the_next_clears_up(holder, tmp_path):
     holder.send_signal(signal.SIGKILL)
     holder.wait()
-    with only_writer(tmp_path):
+    with hold_write_lock(tmp_path):
         assert not (tmp_path / "lake" / ".herijk-half.parquet").exists()
 
 
@@ -56,6 +56,6 @@ def test_leftovers_of_publications_are_left_to_publishing(tmp_path):
     old_site = tmp_path / ".herijk-site"
     old_site.mkdir()
     (old_site / "index.html").write_text("")
-    with only_writer(tmp_path):
+    with hold_write_lock(tmp_path):
         assert other.is_dir()
         assert not old_site.exists()

@@ -21,7 +21,7 @@ from pipeline.blocks.tows import Tows
 from pipeline.method.reading import read_shipped_method
 from tests.warehouse.edition_bench import EditionBench
 from tests.worlds import measure
-from warehouse.derive.plausible import with_doubts
+from warehouse.derive.plausible import add_doubts
 from warehouse.editions.publish import lines_to_look_at
 from warehouse.store.editions import read_edition
 
@@ -100,7 +100,7 @@ def test_a_log_replaced_within_a_season_is_seen_as_a_part_and_doubts_no_tow():
     judged = plausibility(Tows.of(world.tows, world.blocks))
     speeds = [s for s in judged if s.quantity == "speed"]
     assert [s.kind for s in speeds if s.clear] == ["part"]
-    assert with_doubts(world.tows, speeds)["doubts"].list.len().sum() == 0
+    assert add_doubts(world.tows, speeds)["doubts"].list.len().sum() == 0
 
 
 def wind_changed(world, tows: list[str], **factors: float) -> list[Shift]:

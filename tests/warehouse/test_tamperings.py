@@ -12,7 +12,7 @@ import polars as pl
 import pytest
 
 from warehouse.editions.verify import verify
-from warehouse.store.editions import Manifest, chain_head, manifest_path, read_manifest
+from warehouse.store.editions import Manifest, chain_head, find_manifest, read_manifest
 from warehouse.store.files import file_sha256
 
 FIRST, SECOND = "2014-1", "2014-2"
@@ -21,10 +21,10 @@ FIRST, SECOND = "2014-1", "2014-2"
 def seal(path, **fields):
     """Write the manifest of an edition again, with hashes and seal that fit."""
     files = {file: file_sha256(path / file) for file in read_manifest(path).files}
-    about = json.loads(manifest_path(path).read_text(encoding="utf-8"))
+    about = json.loads(find_manifest(path).read_text(encoding="utf-8"))
     about |= {"files": files} | fields
     sealed = Manifest.model_validate(about).sealed()
-    manifest_path(path).write_text(sealed.model_dump_json(indent=1) + "\n", encoding="utf-8")
+    find_manifest(path).write_text(sealed.model_dump_json(indent=1) + "\n", encoding="utf-8")
 
 
 def rewrite(path, table, change):
@@ -39,10 +39,10 @@ def rename_copy(path, name, **fields):
 
 
 def double_key(path):
-    text = manifest_path(path).read_text(encoding="utf-8")
+    text = find_manifest(path).read_text(encoding="utf-8")
     first = '"edition": "2014-2",'
     assert first in text
-    manifest_path(path).write_text(text.replace(first, f'"decision": "x", {first}'), "utf-8")
+    find_manifest(path).write_text(text.replace(first, f'"decision": "x", {first}'), "utf-8")
 
 
 def put_in_place(make):
@@ -98,9 +98,9 @@ def without(table):
     def change(path):
         files = {f: h for f, h in read_manifest(path).files.items() if f != f"{table}.parquet"}
         seal(path)
-        about = json.loads(manifest_path(path).read_text(encoding="utf-8")) | {"files": files}
+        about = json.loads(find_manifest(path).read_text(encoding="utf-8")) | {"files": files}
         sealed = Manifest.model_validate(about).sealed()
-        manifest_path(path).write_text(sealed.model_dump_json(indent=1) + "\n", encoding="utf-8")
+        find_manifest(path).write_text(sealed.model_dump_json(indent=1) + "\n", encoding="utf-8")
 
     return change
 
@@ -120,8 +120,8 @@ OF_FILES = {
     ),
     "an unknown key": (lambda path: seal(path, title="x"), SECOND, "manifest.json: title"),
     "a capital seal": (
-        lambda path: manifest_path(path).write_text(
-            json.dumps(json.loads(manifest_path(path).read_text()) | {
+        lambda path: find_manifest(path).write_text(
+            json.dumps(json.loads(find_manifest(path).read_text()) | {
                 "seal": read_manifest(path).seal.upper()
             })
         ),
@@ -129,9 +129,9 @@ OF_FILES = {
     ),
     "no register listed": (without("register"), SECOND, "manifest.json: files"),
     "no tows listed": (without("tows"), SECOND, "manifest.json: files"),
-    "garbage": (lambda path: manifest_path(path).write_bytes(b"\xff\xfe"), SECOND, "manifest.json"),
+    "garbage": (lambda path: find_manifest(path).write_bytes(b"\xff\xfe"), SECOND, "manifest.json"),
     "brackets": (
-        lambda path: manifest_path(path).write_text("[" * 200_000), SECOND, "manifest.json",
+        lambda path: find_manifest(path).write_text("[" * 200_000), SECOND, "manifest.json",
     ),
     "a folder": (put_in_place(lambda file, _: file.mkdir()), SECOND, "register.csv"),
     "a pipe": (put_in_place(lambda file, _: os.mkfifo(file)), SECOND, "register.csv"),

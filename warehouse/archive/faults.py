@@ -9,13 +9,13 @@ from dataclasses import dataclass, fields
 from typing import Final, Literal
 
 from pipeline.errors import DefectiveInputError
-from pipeline.messages import Sentence, cause_of, say, spoken
+from pipeline.messages import Sentence, find_cause, say, spoken
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
 from pipeline.tables.row import Row
 from warehouse.archive.columns import DefectiveHeaderError
-from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, traced
+from warehouse.store.unforeseen import UNFORESEEN, format_traceback, in_short, is_unforeseen
 
 Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
 """What a fault costs: seconds of one channel of a run, a run, a tow, or a file; or a row of a list
@@ -54,7 +54,7 @@ class Fault:
     @property
     def cause(self) -> str:
         """What faults of one cause share."""
-        return cause_of(self.message)
+        return find_cause(self.message)
 
     def as_row(self) -> Row:
         """Return the fault as a row of `Faults`: only here it is worded in Dutch too."""
@@ -112,4 +112,4 @@ def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fa
         "maintainer of Herijk, with the folder unforeseen of the data folder.",
         in_short(error),
     )
-    return Failure(path, tow_id, None, UNFORESEEN, message, trace=traced(error))
+    return Failure(path, tow_id, None, UNFORESEEN, message, trace=format_traceback(error))

@@ -22,7 +22,7 @@ from warehouse.archive.columns import fold_word
 from warehouse.archive.faults import DefectiveFileError
 from warehouse.archive.kinds import LIST_KINDS, ListKind
 from warehouse.archive.profile import PROFILE_FILE
-from warehouse.store.files import file_sha256, written_beside
+from warehouse.store.files import file_sha256, write_beside
 
 SAMPLES: Final = "samples"
 TEXT_SUFFIXES: Final = (".csv", ".txt")
@@ -254,7 +254,7 @@ class FileHashes:
 
     def save(self, path: Path) -> None:
         """Write the cache to `path` in one step: a reader sees the old one or the new one."""
-        with written_beside(path) as beside:
+        with write_beside(path) as beside:
             beside.write_text(json.dumps(self.entries, indent=0, sort_keys=True), encoding="utf-8")
 
     def hash_samples(self, root: Path, paths: str) -> str:

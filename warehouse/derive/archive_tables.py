@@ -10,13 +10,13 @@ import polars as pl
 from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from pipeline.messages import say
-from pipeline.recompute.facts import with_boat_types
+from pipeline.recompute.facts import add_boat_types
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults, SeasonIndex
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.archive.faults import OF_A_HEADER, fault_frame
 from warehouse.archive.list_rules import find_windows_outside_run
-from warehouse.derive.plausible import gross_faults, judge, with_doubts
+from warehouse.derive.plausible import add_doubts, judge, list_gross_faults
 from warehouse.derive.same_samples import CONTENT, same_samples
 from warehouse.intake import lake
 from warehouse.intake import seasons as intake
@@ -53,10 +53,10 @@ def archive_tables(
     present = contents.group_by("tow_id", "run", maintain_order=True).agg(
         seconds=pl.col("second").max() + 1
     )
-    listed = _with_what_was_read(season_tows.join(sound, on="tow_id", how="semi"), index)
+    listed = _add_reading_steps(season_tows.join(sound, on="tow_id", how="semi"), index)
     runs_read = season_runs.join(present, on=["tow_id", "run"], how="semi")
-    tows, contradicted = judged_tows(
-        with_boat_types(listed, listed_boats), stack_blocks(blocks, runs_read), contents
+    tows, contradicted = judge_tows(
+        add_boat_types(listed, listed_boats), stack_blocks(blocks, runs_read), contents
     )
     sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
     windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
@@ -71,7 +71,7 @@ def archive_tables(
         "tows": tows.join(
             _lost_of_tows(losses).drop("lost_s"), on="tow_id", how="left", maintain_order="left"
         ).with_columns(pl.col("runs_set_aside").fill_null(0)),
-        "tow_runs": _with_lost_seconds(runs, losses),
+        "tow_runs": _add_lost_seconds(runs, losses),
         "hand_windows": windows.join(beyond, on=["path", "line"], how="anti"),
         "quarantine": add_first_seen(set_aside, quarantine_before, today),
     }
@@ -137,7 +137,7 @@ def read_earlier(store: Store, table: str) -> pl.DataFrame:
         return TABLES[table].create_empty()
 
 
-def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
+def _add_reading_steps(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
     """Add in which steps the readings are written, and whether there is a wind among them."""
     read = index.select("tow_id", "wind_read", "gps_step_m_s", "force_step_n")
     has_wind = pl.col("wind_measured") & pl.col("wind_read").fill_null(True)
@@ -156,7 +156,7 @@ def _lost_of_tows(losses: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+def _add_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
     """Add the longest time that was left out of a channel of each run."""
     lost = (
         losses.filter(lost="seconds")
@@ -168,7 +168,7 @@ def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame
     )
 
 
-def judged_tows(
+def judge_tows(
     tows: pl.DataFrame, blocks: RunBlocks, contents: pl.DataFrame
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
     """Return the tows with their doubts, and the faults of those that other tows contradict.
@@ -181,8 +181,8 @@ def judged_tows(
     twice = same_samples(tows, contents)
     once = tows.join(twice, on="tow_id", how="anti")
     judged = judge(once, blocks)
-    gross = gross_faults(judged, once)
-    kept = with_doubts(once.join(gross, on="tow_id", how="anti"), judged)
+    gross = list_gross_faults(judged, once)
+    kept = add_doubts(once.join(gross, on="tow_id", how="anti"), judged)
     return kept, pl.concat([twice, gross])
 
 

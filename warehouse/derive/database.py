@@ -16,7 +16,7 @@ from pipeline.tables.display import find_number_form
 from pipeline.tables.schemas import ABOUT, STUDY, TABLES
 from pipeline.tables.views import VIEWS
 from warehouse.store.code import code_version
-from warehouse.store.files import file_sha256, written_beside
+from warehouse.store.files import file_sha256, write_beside
 from warehouse.store.store import Store
 
 DATABASE_TABLE: Final = "warehouse_database"
@@ -70,7 +70,7 @@ def warehouse_database(
     return tables["contents"].select("table", "rows", sha256)
 
 
-def left_wal(path: Path) -> Path:
+def find_stray_wal(path: Path) -> Path:
     """Return the path of a write-ahead log that another program left beside the database.
 
     DuckDB would replay it into a new database.
@@ -85,7 +85,7 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
         path: the database file; replaced at once when the new one is complete.
         tables: frames by table name.
     """
-    with written_beside(path) as beside:
+    with write_beside(path) as beside:
         beside.unlink()
         with duckdb.connect() as connection:
             connection.execute("SET threads = 1")
@@ -101,7 +101,7 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
                 _add_views(connection)
                 connection.execute("COMMIT")
             connection.execute("CHECKPOINT w")  # closing would keep silent where it does not fit
-        left_wal(path).unlink(missing_ok=True)
+        find_stray_wal(path).unlink(missing_ok=True)
 
 
 def _add_table(connection: duckdb.DuckDBPyConnection, name: str, frame: pl.DataFrame) -> None:
@@ -159,5 +159,5 @@ def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 def is_whole(store: Store) -> bool:
     """Return whether the database is there, byte for byte as it was made."""
     made = store.read(DATABASE_TABLE)["sha256"][0]
-    left = left_wal(store.database).exists()  # a reader would replay it
+    left = find_stray_wal(store.database).exists()  # a reader would replay it
     return store.database.exists() and not left and made == file_sha256(store.database)

@@ -47,7 +47,7 @@ def judge(tows: pl.DataFrame, blocks: RunBlocks) -> tuple[Shift, ...]:
     return plausibility(Tows.of(tows, blocks))
 
 
-def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:
+def list_gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:
     """Return a fault for each tow that a wrong unit, column or file costs."""
     sentences = {
         tow: (f"{_SENSOR[shift.quantity]}_not_plausible", _sentence(shift))
@@ -63,7 +63,7 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Fa
     return fault_frame(faults)
 
 
-def with_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
+def add_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
     """Add to tows the columns `doubts` and `unusual`: what all others say of them."""
 
     def checks(verdict: str, doubted: bool) -> pl.Series:

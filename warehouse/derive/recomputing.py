@@ -13,12 +13,18 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.method.definition import Method
-from pipeline.recompute.facts import with_boats, with_hand_windows
+from pipeline.recompute.facts import add_boats, add_hand_windows
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
 from warehouse.archive.faults import Fault, fault_frame
 from warehouse.derive.registers import members_of
-from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, sentence, traced
+from warehouse.store.unforeseen import (
+    UNFORESEEN,
+    format_traceback,
+    in_short,
+    is_unforeseen,
+    sentence,
+)
 
 METHOD_TABLES: Final = (
     *("run_points", "curves", "log_factors", "season_links", "season_steps"),
@@ -94,8 +100,8 @@ def recompute_archive(methods: Sequence[Method], archive: ArchiveRuns) -> Recomp
         made, errors = _recompute_methods(methods, sound)
     if not made:
         raise next(iter(errors.values()))
-    failures = {f"tow {tow_id}": traced(error) for tow_id, error in failing.items()}
-    failures |= {f"method {name}": traced(error) for name, error in errors.items()}
+    failures = {f"tow {tow_id}": format_traceback(error) for tow_id, error in failing.items()}
+    failures |= {f"method {name}": format_traceback(error) for name, error in errors.items()}
     paths = dict(archive.tows.select("tow_id", "samples_path").rows())
     faults = []
     for tow_id, error in failing.items():
@@ -148,6 +154,6 @@ def _recompute_methods(
 
 def _recompute(method: Method, archive: ArchiveRuns, cache: RunCache) -> dict[str, pl.DataFrame]:
     """Return `METHOD_TABLES` of one method."""
-    runs = stack_blocks(archive.blocks, with_hand_windows(archive.tow_runs, archive.hand_windows))
-    made = recompute(method, with_boats(archive.tows, archive.boats), runs, cache)
+    runs = stack_blocks(archive.blocks, add_hand_windows(archive.tow_runs, archive.hand_windows))
+    made = recompute(method, add_boats(archive.tows, archive.boats), runs, cache)
     return {**vars(made), "ensemble": members_of(method, made)}

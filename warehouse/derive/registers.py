@@ -18,7 +18,7 @@ from pipeline.register.printed import carried_lines
 from pipeline.register.register import (
     CURVE_COLUMNS,
     LINE,
-    as_ruled,
+    apply_rule,
     draft_name,
     draft_register,
     flag_unmeasured,
@@ -119,7 +119,7 @@ def race_changes(
 
 def members_of(method: Method, made: Recomputed) -> pl.DataFrame:
     """Equally likely numbers of every tow: rows of the table `ensemble`."""
-    ruled = as_ruled(made.curves, method.validity)
+    ruled = apply_rule(made.curves, method.validity)
     return tow_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
 
 
@@ -172,13 +172,13 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
     }
 
 
-def decisions_of(store: Store, edition: Edition) -> pl.DataFrame:
+def read_decisions_of_edition(store: Store, edition: Edition) -> pl.DataFrame:
     """Return the decisions about tows with which an edition was made; for a draft those of now."""
     name = edition.manifest.edition
     if name not in edition_names(store):
-        return decided.decision_table(decided.read_decisions(store.root / decided.FILE_NAME))
+        return decided.tabulate_decisions(decided.read_decisions(store.root / decided.FILE_NAME))
     text = (edition_path(store, name) / DECISIONS).read_text(encoding="utf-8")
-    return decided.decision_table(TypeAdapter(tuple[decided.Decision, ...]).validate_json(text))
+    return decided.tabulate_decisions(TypeAdapter(tuple[decided.Decision, ...]).validate_json(text))
 
 
 def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
@@ -193,7 +193,10 @@ def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
         )
     tows = edition.tables["tows"].filter(pl.col("tow_date") <= edition.manifest.valid_from)
     earlier = lines_of_all_days(
-        edition.tables["curves"], tows, edition.method.validity, decisions_of(store, edition)
+        edition.tables["curves"],
+        tows,
+        edition.method.validity,
+        read_decisions_of_edition(store, edition),
     ).join(lines, on=[*LINE, "tow_id"], how="anti")
     both = pl.concat([earlier, lines.select(earlier.columns)])
     return history_rows(both, edition.manifest.edition, edition.method.name)

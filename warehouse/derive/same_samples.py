@@ -45,7 +45,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         blocks.join(facts, on="tow_id", how="semi")
         .group_by("tow_id", "run", maintain_order=True)
         .agg(pl.col(CONTENT).sum())
-        .pipe(_with_content)
+        .pipe(_add_content)
         .filter(pl.col("content").is_duplicated())
         .join(facts, on="tow_id", maintain_order="left")
         .sort("tow_date", "tow_id", "run")
@@ -59,7 +59,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     return rows.unique("tow_id", keep="first", maintain_order=True)
 
 
-def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
+def _add_content(runs: pl.DataFrame) -> pl.DataFrame:
     """Return the runs with `content`, a number that runs of one measurement have in common."""
     sums = runs.select(CONTENT).to_numpy()
     means = np.nan_to_num(sums[:, 1:] / np.maximum(sums[:, :1], 1.0))

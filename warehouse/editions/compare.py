@@ -16,7 +16,7 @@ import polars as pl
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.curve import cw
 from pipeline.method.definition import RUNS_ALONE, Method, find_method_in_force
-from pipeline.races.power import curve_of_lines
+from pipeline.races.power import find_line_curves
 from pipeline.register.changes import (
     NO_FACTOR,
     NO_PARTS,
@@ -32,7 +32,7 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
 from pipeline.tables.studies import CorrectionSteps
 from warehouse.derive.registers import lines_in_time
-from warehouse.editions.inputs import INPUTS_HASH, same_tows, tables_of_today
+from warehouse.editions.inputs import INPUTS_HASH, find_same_tows, tables_of_today
 from warehouse.store.editions import CHANGES, Edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
@@ -58,14 +58,14 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """
     if CHANGES in new.tables and new.manifest.previous == old.manifest.edition:
         return new.tables[CHANGES]
-    before, after = _with_printed_tows(old, new), new.register
+    before, after = _add_printed_tows(old, new), new.register
     ladder = _ladder(store, old, new)
-    printed = _printed_parts(before, ladder, new) if old.method is None else NO_PARTS
+    printed = _explain_printed_lines(before, ladder, new) if old.method is None else NO_PARTS
     steps = steps_of_lines(before, ladder.filter(pl.col("position") > 0))
     parts = pl.concat([printed, steps], how="vertical_relaxed")
 
     have_tows = "tows" in old.tables and "tows" in new.tables
-    same = same_tows(old.tables, new.tables) if have_tows else frozenset[str]()
+    same = find_same_tows(old.tables, new.tables) if have_tows else frozenset[str]()
     ground = grounds(
         before,
         after,
@@ -86,7 +86,7 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     return lines.sort(LINE).select(*beside, name, "old_status", "new_status")
 
 
-def _with_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
+def _add_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
     """Add to each printed old line the tow of that day and line, where there is one."""
     if old.method is not None or "tows" not in new.tables:
         return old.register
@@ -109,7 +109,7 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
 
     today = tables_of_today(store)
-    there = pl.col("tow_id").is_in(list(same_tows(new.tables, today)))
+    there = pl.col("tow_id").is_in(list(find_same_tows(new.tables, today)))
     tows, runs = (table.filter(there) for table in today.values())
     if tows.is_empty():
         return NO_LADDER
@@ -131,7 +131,9 @@ def _method_in_print(store: Store, printed: Edition) -> Method | None:
     return find_method_in_force(printed_in, [known.get(name) for name in known.names])
 
 
-def _printed_parts(printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition) -> pl.DataFrame:
+def _explain_printed_lines(
+    printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition
+) -> pl.DataFrame:
     """Return what is known of printed lines before the steps of the method.
 
     With samples: from print to the tow by the method then in force. Without: the log error of its
@@ -145,14 +147,14 @@ def _printed_parts(printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition) ->
     measured = lines.join(computed, on="tow_id", maintain_order="left").join(
         speeds, on="tow_id", maintain_order="left"
     )
-    at_tow_speed = cw(*curve_of_lines(measured), measured["tow_speed"].to_numpy())
+    at_tow_speed = cw(*find_line_curves(measured), measured["tow_speed"].to_numpy())
     reproduction = measured["computed_cw"] / pl.Series(at_tow_speed, dtype=pl.Float64)
 
     unmeasured = lines.join(measured, on=LINE, how="anti").select(lines.columns)
     rebased = rebase_printed(unmeasured, new.tables["log_factors"], new.method)
     unmeasured = unmeasured.join(rebased, on=LINE, how="semi", maintain_order="left")
     speed = unmeasured["declared_speed_m_s"].to_numpy()
-    closed_form = cw(*curve_of_lines(rebased), speed) / cw(*curve_of_lines(unmeasured), speed)
+    closed_form = cw(*find_line_curves(rebased), speed) / cw(*find_line_curves(unmeasured), speed)
 
     def parts(of: pl.DataFrame, cause: str, factor: pl.Series) -> pl.DataFrame:
         step = pl.lit(None, pl.String).alias("step")

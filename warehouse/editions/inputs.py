@@ -29,7 +29,7 @@ OLDER_SOURCES: Final = "inputs.csv"
 """What editions up to version 1.0.0 were made from; since then the manifest and the tows say it."""
 
 
-def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
+def add_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
     """Tows with the hash of all that their numbers are made from: list row, runs and files."""
     facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
     of_tow = runs.sort("tow_id", "run").select(facts).rows_by_key("tow_id", include_key=True)
@@ -46,10 +46,12 @@ def tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - all that reads archives
 
     runs = intake.runs_with_windows(store)
-    return {"tows": with_input_hashes(intake.typed_tows(store), runs), "tow_runs": runs}
+    return {"tows": add_input_hashes(intake.typed_tows(store), runs), "tow_runs": runs}
 
 
-def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) -> frozenset[str]:
+def find_same_tows(
+    was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]
+) -> frozenset[str]:
     """Tows whose inputs are the same in two sets of tables `tows` and `tow_runs`.
 
     Compared is what both tables say: a fact that was not recorded earlier is no difference.
@@ -59,7 +61,7 @@ def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) 
         for name in ("tows", "tow_runs")
     }
     one, other = (
-        with_input_hashes(*(edition[name].select(shared[name]) for name in shared))
+        add_input_hashes(*(edition[name].select(shared[name]) for name in shared))
         for edition in (was, now)
     )
     return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])

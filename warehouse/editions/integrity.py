@@ -23,10 +23,10 @@ from warehouse.store.editions import (
     PARQUET,
     Manifest,
     edition_names,
+    find_manifest,
     has_doubled_key,
     is_edition_name,
     is_plain_file,
-    manifest_path,
     read_table,
     stray_names,
 )
@@ -108,7 +108,7 @@ def check_manifest(
     knows its seal. So it is also held against the other editions, the archive and what was known
     of it at the last rebuild.
     """
-    own = manifest_path(store.editions / manifest.edition).name
+    own = find_manifest(store.editions / manifest.edition).name
     found = [
         *_find_impossible_fields(manifest, is_older=own != MANIFEST),
         *_find_wrong_relations(manifest, manifests),
@@ -167,7 +167,7 @@ def _find_changed_facts(store: Store, manifest: Manifest) -> Iterator[tuple[str,
 
 def check_files(path: Path, manifest: Manifest) -> Iterator[Finding]:
     """Find files that were changed, added or are gone, links, and a manifest that does not fit."""
-    name, own = path.name, manifest_path(path).name
+    name, own = path.name, find_manifest(path).name
     if manifest.edition != name:
         message = say("the folder was renamed; it is {}", manifest.edition)
         yield Finding(name, "altered", own, message)

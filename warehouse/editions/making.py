@@ -18,7 +18,7 @@ import polars as pl
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
-from pipeline.method.writing import method_text
+from pipeline.method.writing import write_method_text
 from pipeline.recompute.recompute import recompute
 from pipeline.register.printed import NOT_REBASED, carried_lines
 from pipeline.register.register import (
@@ -34,7 +34,7 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import Register
 from pipeline.tables.schemas import conform
-from warehouse.derive.registers import decisions_of, members_of
+from warehouse.derive.registers import members_of, read_decisions_of_edition
 from warehouse.editions import notes, sheets
 from warehouse.editions import printed as prints
 from warehouse.editions.compare import compare
@@ -83,7 +83,7 @@ def make_edition(
     Raises:
         MissingKnowledgeError: a decision is about a tow that is not in the warehouse.
     """
-    decisions = decided.decision_table(decisions_up_to(store, manifest.published_on))
+    decisions = decided.tabulate_decisions(decisions_up_to(store, manifest.published_on))
     today = tables_of_today(store)
     unknown = decisions.join(today["tows"], on="tow_id", how="anti")["tow_id"].to_list()
     if unknown:
@@ -126,7 +126,7 @@ def make_again(store: Store, edition: Edition) -> Edition:
         registers = list(list_sources(path, manifest))
         if len(registers) != 1:
             raise BrokenPromiseError("{} does not say which printed register it is", path.name)
-        return with_changes(store, make_printed(store, manifest, registers[0]))
+        return add_changes(store, make_printed(store, manifest, registers[0]))
     own = edition.tables["tows"]
     judged = own.select("tow_id", *(name for name in JUDGED if name in own.columns))
     tows, runs = (t.join(judged, on="tow_id", how="semi") for t in tables_of_today(store).values())
@@ -137,14 +137,14 @@ def make_again(store: Store, edition: Edition) -> Edition:
         manifest,
         edition.method,
         {"tows": tows, "tow_runs": runs},
-        decisions_of(store, edition),
+        read_decisions_of_edition(store, edition),
         crews=edition.register.filter(status="never_towed"),
         unmeasured=edition.register.filter(is_flagged).select(*LINE, tow_date=manifest.valid_from),
     )
-    return with_changes(store, again)
+    return add_changes(store, again)
 
 
-def with_changes(store: Store, edition: Edition) -> Edition:
+def add_changes(store: Store, edition: Edition) -> Edition:
     """Add the comparison with the edition before, where there is one."""
     previous = _previous(store, edition)
     if previous is None:
@@ -254,7 +254,7 @@ def _complete(
 def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
     """Write the sheets, method and decisions of an edition, by file name."""
     contents = {
-        folder.CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
+        folder.CSV: sheets.encode_csv(edition.register, sheets.SHEET_FIELDS),
         folder.XLSX: sheets.write_workbook(
             edition.register, sheets.SHEET_FIELDS, edition.manifest.published_on
         ),
@@ -262,7 +262,7 @@ def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
     if edition.method is not None:
         decisions = decisions_up_to(store, edition.manifest.published_on)
         decided_then = json.dumps([d.model_dump(mode="json") for d in decisions], indent=1)
-        contents[folder.METHOD] = method_text(edition.method).encode("utf-8")
+        contents[folder.METHOD] = write_method_text(edition.method).encode("utf-8")
         contents[folder.DECISIONS] = decided_then.encode("utf-8")
     return contents
 

@@ -24,7 +24,7 @@ from warehouse.editions import printed as prints
 from warehouse.editions.inputs import (
     list_files,
 )
-from warehouse.editions.making import edition_files, make_edition, make_printed, with_changes
+from warehouse.editions.making import add_changes, edition_files, make_edition, make_printed
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
     Edition,
@@ -206,7 +206,7 @@ def _manifest(
 
 def _write(store: Store, edition: Edition) -> Path:
     """Write an edition's folder as the next of the chain."""
-    compared = with_changes(store, edition)
+    compared = add_changes(store, edition)
 
     def contents() -> dict[str, bytes]:
         head = chain_head(store)

@@ -122,7 +122,7 @@ def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str
     ]
 
 
-def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
+def encode_csv(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
     """Write a sheet as CSV for Dutch spreadsheets: BOM, semicolons, decimal commas, no formulas."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, delimiter=";", lineterminator="\r\n")

@@ -25,7 +25,7 @@ from warehouse.archive import FileHashes
 from warehouse.derive.archive_tables import read_archive
 from warehouse.editions import sheets
 from warehouse.editions.compare import parts_of
-from warehouse.editions.inputs import JUDGED, same_tows
+from warehouse.editions.inputs import JUDGED, find_same_tows
 from warehouse.editions.integrity import (
     READING_ERRORS,
     Finding,
@@ -45,8 +45,8 @@ from warehouse.store.editions import (
     Edition,
     chain_head,
     edition_path,
+    find_manifest,
     is_plain_file,
-    manifest_path,
     read_edition,
     readable_manifests,
 )
@@ -119,7 +119,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
     seal = None if last is None else last.seal
     findings = [*check_chain(store, manifests, seal, head)]
     for name, error in damaged.items():
-        where = manifest_path(store.editions / name).name
+        where = find_manifest(store.editions / name).name
         findings.append(Finding(name, "altered", where, str(error)))
     archive = archive_root(store)
     hashes = FileHashes() if afresh else FileHashes.load(store.file_hashes)
@@ -234,7 +234,7 @@ def _find_added_columns(
 
 def _has_other_tows(edition: Edition, again: Edition) -> bool:
     tows = edition.tables.get("tows")
-    return tows is not None and len(same_tows(edition.tables, again.tables)) < tows.height
+    return tows is not None and len(find_same_tows(edition.tables, again.tables)) < tows.height
 
 
 def _compare_table(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:

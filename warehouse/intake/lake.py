@@ -32,17 +32,17 @@ from warehouse.store.store import (
     Store,
     count_rows,
     fingerprint,
-    metadata_of,
+    read_file_metadata,
     read_parquet,
     write_parquet,
 )
 from warehouse.store.unforeseen import (
     UNFORESEEN,
+    format_traceback,
     in_short,
     is_unforeseen,
     note,
     sentence,
-    traced,
 )
 
 LAKE_FORM: Final = {
@@ -129,7 +129,7 @@ def _bring_in(
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
         samples = None
-        stored = metadata_of(path, FACTS_KEY)
+        stored = read_file_metadata(path, FACTS_KEY)
         facts = None if stored is None else json.loads(stored)
         if facts is None:
             samples, facts = read_samples(root, tow, runs, profile)
@@ -146,7 +146,7 @@ def _bring_in(
     except BaseException as error:
         if not is_unforeseen(error):
             raise
-        note(store.root, tow["tow_id"], traced(error))
+        note(store.root, tow["tow_id"], format_traceback(error))
         message = sentence(tow["tow_id"], in_short(error))
         fault = Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
     else:

@@ -15,7 +15,7 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from pipeline.errors import MissingKnowledgeError
-from pipeline.recompute.facts import with_boat_types, with_hand_windows
+from pipeline.recompute.facts import add_boat_types, add_hand_windows
 from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import AboutArchive
 from warehouse.archive import (
@@ -137,12 +137,12 @@ def all_blocks(store: Store, columns: Sequence[str] | None = None) -> pl.DataFra
 
 def typed_tows(store: Store) -> pl.DataFrame:
     """All sound tows with the type of their boat."""
-    return with_boat_types(store.read("tows"), store.read("boats"))
+    return add_boat_types(store.read("tows"), store.read("boats"))
 
 
 def runs_with_windows(store: Store) -> pl.DataFrame:
     """Return the runs of all sound tows, with the windows that were given by hand."""
-    return with_hand_windows(store.read("tow_runs"), store.read("hand_windows"))
+    return add_hand_windows(store.read("tow_runs"), store.read("hand_windows"))
 
 
 def run_blocks(store: Store) -> RunBlocks:

@@ -23,7 +23,7 @@ from pipeline.tables.schemas import TABLES
 from warehouse.editions.compare import compare
 from warehouse.editions.publish import drafted
 from warehouse.queries.views import DRAFT, Views
-from warehouse.store.database import no_such_edition
+from warehouse.store.database import make_unknown_edition_error
 from warehouse.store.editions import Edition, read_edition
 from warehouse.store.methods import KnownMethods
 
@@ -80,7 +80,7 @@ def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
     """Return a published edition, or what publishing a draft would give."""
     known = views.table("register")["edition"].unique()
     if name not in known:
-        raise no_such_edition(name, known)
+        raise make_unknown_edition_error(name, known)
     if not name.startswith(DRAFT):
         return read_edition(views.store, name)
     method = KnownMethods.of(views.store).get(name.removeprefix(DRAFT))
@@ -162,7 +162,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         .join(logs, on=["method", "season"], how="left", maintain_order="left")
         .join(predicted, on=["method", "tow_id"], how="left", maintain_order="left")
     )
-    return _with_places(joined)
+    return _add_places(joined)
 
 
 _Tables = Callable[[str], pl.DataFrame]
@@ -217,7 +217,7 @@ def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     return {(str(method), int(season)): f.to_dicts() for (method, season), f in by_season.items()}
 
 
-def _with_places(lines: pl.DataFrame) -> pl.DataFrame:
+def _add_places(lines: pl.DataFrame) -> pl.DataFrame:
     """With the place of each line among the boats of its type and class."""
     like = ("boat_type", "crew_class")
     places = (
@@ -233,7 +233,7 @@ def _with_places(lines: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
+def select_own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
     """Results of races under two editions, with how many in race and class have a place in both."""
     races = views.ask("races").filter(from_edition=old or "", to_edition=edition)
     size = pl.col("new_rank").count().over("race", "race_date", "crew_class").alias("race_size")

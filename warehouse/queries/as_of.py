@@ -22,7 +22,7 @@ from warehouse.store.store import Store
 NOT_YET: Final = "never_towed"
 
 
-def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
+def overlay_register(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
     """Make a connection answer as of a day: tables `register`, `due_list` and `race_changes`.
 
     Args:
@@ -50,7 +50,7 @@ def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
         _lay(db, name, frame)
 
 
-def lay_published(db: duckdb.DuckDBPyConnection, store: Store) -> None:
+def overlay_editions(db: duckdb.DuckDBPyConnection, store: Store) -> None:
     """Make a connection answer with the editions of now, where they are others than it knows."""
     editions = pl.DataFrame(db.table("editions").pl())["edition"].to_list()
     if set(editions) == set(edition_names(store)):

@@ -29,7 +29,7 @@ from pipeline.channels import OUT, RUN_SECONDS, SECOND_FILE_OFFSET
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGE
 from pipeline.method.definition import Method
-from pipeline.recompute.facts import with_boats
+from pipeline.recompute.facts import add_boats
 from pipeline.recompute.recompute import recompute
 from pipeline.tables.keys import LINE
 from pipeline.tables.row import Row
@@ -101,7 +101,7 @@ def assess(store: Store, archive: Path, tow_id: str, method: Method) -> Assessme
         if copy.read("listed_tows").filter(tow_id=tow_id).is_empty():
             raise _not_usable(tow_id, copy.read("list_faults"))
         runs = stack_blocks(intake.all_blocks(copy), intake.runs_with_windows(copy))
-        made = recompute(method, with_boats(copy.read("tows"), copy.read("boats")), runs)
+        made = recompute(method, add_boats(copy.read("tows"), copy.read("boats")), runs)
         for name, frame in vars(made).items():
             if name in TABLES:
                 copy.write(name, conform(name, frame))

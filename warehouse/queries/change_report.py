@@ -13,15 +13,15 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.recompute.facts import with_boat_types, with_hand_windows
+from pipeline.recompute.facts import add_boat_types, add_hand_windows
 from pipeline.register.changes import NO_PARTS, compare_lines
 from pipeline.register.register import LINE, MEASURED, default_method, draft_name
 from pipeline.tables.row import Row
 from warehouse.derive.database import DATABASE_TABLE
 from warehouse.editions.compare import grounds
-from warehouse.editions.inputs import INPUTS_HASH, same_tows
+from warehouse.editions.inputs import INPUTS_HASH, find_same_tows
 from warehouse.store.code import code_version
-from warehouse.store.files import folder_written_beside
+from warehouse.store.files import write_folder_beside
 from warehouse.store.store import DamagedFileError, Store, read_parquet, write_parquet
 
 NEEDED: Final = (
@@ -104,7 +104,7 @@ def is_reported(store: Store) -> bool:
 def remember(store: Store) -> None:
     """Keep what the next report compares with."""
     if not is_reported(store):
-        with folder_written_beside(reported_path(store)) as beside:
+        with write_folder_beside(reported_path(store)) as beside:
             for name, frame in _today(store).items():
                 write_parquet(frame, beside / f"{name}.parquet")
 
@@ -130,8 +130,8 @@ def _today(store: Store) -> Tables:
     is_draft = pl.col("edition").str.starts_with(draft_name(""))
     return {
         "about": pl.DataFrame([about]),
-        "tows": with_boat_types(tables["tows"], tables["boats"]),
-        "tow_runs": with_hand_windows(tables["tow_runs"], tables["hand_windows"]),
+        "tows": add_boat_types(tables["tows"], tables["boats"]),
+        "tow_runs": add_hand_windows(tables["tow_runs"], tables["hand_windows"]),
         "quarantine": store.read("quarantine", columns=FAULT),
         "log_factors": store.read("log_factors"),
         "methods": tables["methods"],
@@ -183,7 +183,7 @@ def _tows(was: Tables, now: Tables) -> pl.DataFrame:
             coalesce=True,
             maintain_order="left_right",
         )
-        .filter(~pl.col("tow_id").is_in(list(same_tows(was, now))))
+        .filter(~pl.col("tow_id").is_in(list(find_same_tows(was, now))))
     )
     same_files = pl.all_horizontal(pl.col(f).eq_missing(pl.col(f"{f}_right")) for f in FILES)
     what = (
@@ -223,7 +223,7 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 
 def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
     """Lines that changed, of every draft that there was and is, with the boat's name."""
-    same = same_tows(was, now)
+    same = find_same_tows(was, now)
     others = any(tables["tows"].height > len(same) for tables in (was, now))
     code = not was["about"]["code_version"].equals(now["about"]["code_version"])
     hashes = [dict(t["methods"].select("method", "content_hash").rows()) for t in (was, now)]

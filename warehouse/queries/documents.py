@@ -8,13 +8,13 @@ import polars as pl
 from pipeline.curve import cw
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
-from pipeline.races.power import curve_of_lines
+from pipeline.races.power import find_line_curves
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import LINE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import log_known
 from warehouse.queries.views import DRAFT, Views
-from warehouse.store.database import no_such_edition
+from warehouse.store.database import make_unknown_edition_error
 from warehouse.store.editions import edition_names, read_edition
 
 CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64())
@@ -74,17 +74,17 @@ def _lines(views: Views, edition: str) -> pl.DataFrame:
         drafts = views.register().with_columns(basis=pl.lit(None, pl.String))
         lines = drafts.filter(edition=edition)
         if lines.is_empty():
-            raise no_such_edition(edition, drafts["edition"].unique())
+            raise make_unknown_edition_error(edition, drafts["edition"].unique())
         changes = views.table("register_changes").filter(to_edition=edition)
         before = drafts.join(changes, left_on="edition", right_on="from_edition", how="semi")
     held = before.select(*LINE, from_edition="edition", old_cw_kg_m="cw_kg_m")
     return lines.join(held, on=LINE, how="left", maintain_order="left")
 
 
-def curve_of(line: Row) -> pl.DataFrame:
+def draw_line_curve(line: Row) -> pl.DataFrame:
     """Return the curve of a line: `speed_m_s`, `cw_kg_m` and `power_w` per rower."""
     speed = np.array(SPEEDS) * line["declared_speed_m_s"]
-    a, s = curve_of_lines(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))
+    a, s = find_line_curves(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))
     resistance = cw(a, s, speed)
     power = power_per_rower_w(resistance, speed, np.full(speed.shape, line["rowers"]))
     return pl.DataFrame({"speed_m_s": speed, "cw_kg_m": resistance, "power_w": power})

@@ -13,7 +13,7 @@ from typing import Self
 import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.consistency.observed import observe_trusted, of_trusted
+from pipeline.consistency.observed import observe_trusted, select_trusted
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
 from pipeline.consistency.types import DIFFERENCES_THAT_MATTER, compare_types
 from pipeline.method.definition import Method
@@ -22,7 +22,7 @@ from pipeline.recompute.results import Recomputed
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register.register import draft_name, draft_register, reference_day
 from warehouse.intake.seasons import run_blocks, typed_tows
-from warehouse.store.store import Store, no_warehouse
+from warehouse.store.store import Store, make_no_warehouse_error
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class History:
             MissingKnowledgeError: nothing was rebuilt in this data folder.
         """
         if store.made_from("tows") is None:
-            raise no_warehouse(store)
+            raise make_no_warehouse_error(store)
         tows = typed_tows(store)
         known = store.read("type_consistency").select("quantity", "difference_that_matters")
         return cls(
@@ -104,7 +104,7 @@ class Draft:
     @cached_property
     def repeat_pairs(self) -> pl.DataFrame:
         """Rows of the table `repeat_pairs`."""
-        return repeat_pairs(of_trusted(self.made.curves, self.history.tows), self.history.tows)
+        return repeat_pairs(select_trusted(self.made.curves, self.history.tows), self.history.tows)
 
     @cached_property
     def reproducibility(self) -> pl.DataFrame:

@@ -11,7 +11,7 @@ from pipeline.register.register import default_method, draft_name
 from pipeline.tables.row import Row
 from warehouse.queries.answers import current_edition
 from warehouse.queries.views import Views
-from warehouse.store.database import no_such_edition
+from warehouse.store.database import make_unknown_edition_error
 from warehouse.store.store import Store
 
 EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_curve"
@@ -69,7 +69,7 @@ def register_report(
         lines = views.register()
         of_edition = lines.filter(edition=chosen)
         if of_edition.is_empty():
-            raise no_such_edition(chosen, lines["edition"].unique())
+            raise make_unknown_edition_error(chosen, lines["edition"].unique())
         simulated = views.simulated(chosen)
     return RegisterReport(chosen, simulated, of_edition["as_of"][0], of_edition.to_dicts())
 

@@ -9,8 +9,8 @@ from typing import Final, Self
 
 import polars as pl
 
-from pipeline.register.register import LINE, with_empty_thwart
-from warehouse.queries.as_of import lay_over, lay_published
+from pipeline.register.register import LINE, add_empty_thwart
+from warehouse.queries.as_of import overlay_editions, overlay_register
 from warehouse.queries.reports import SIZED_FAULTS
 from warehouse.store.database import open_database
 from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
@@ -28,9 +28,9 @@ class Views:
         self.store = store
         self._db = open_database(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
-        lay_published(self._db, store)
+        overlay_editions(self._db, store)
         if as_of is not None:
-            lay_over(self._db, store, as_of)
+            overlay_register(self._db, store, as_of)
 
     def __enter__(self) -> Self:
         return self
@@ -71,7 +71,7 @@ class Views:
         lines = self.ask("register")
         key = ["edition", *LINE]
         for edition in edition_names(self.store):
-            own = with_empty_thwart(read_table(edition_path(self.store, edition), "register"))
+            own = add_empty_thwart(read_table(edition_path(self.store, edition), "register"))
             own = own.select(*key, "name", "boat_type")
             lines = lines.update(own, on=key, include_nulls=True)
         called = pl.col("name").str.to_lowercase()

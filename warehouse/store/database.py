@@ -43,7 +43,7 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     return connection
 
 
-def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError:
+def make_unknown_edition_error(edition: str, known: Iterable[str]) -> MissingKnowledgeError:
     """Return the error about an edition or draft that the database does not hold."""
     return MissingKnowledgeError(
         "the last rebuild has no edition {}; it has {}. One published since is there after herijk "

@@ -58,7 +58,7 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
     return tuple(sorted(decisions, key=lambda decision: (decision.datum, decision.sleep_id)))
 
 
-def decision_table(decisions: Sequence[Decision]) -> pl.DataFrame:
+def tabulate_decisions(decisions: Sequence[Decision]) -> pl.DataFrame:
     """Return the verdicts as `pipeline.register.register.draft_register` takes them."""
     rows = [{"tow_id": d.sleep_id, "verdict": VERDICTS[d.oordeel]} for d in decisions]
     return pl.DataFrame(rows, schema=DECISION_SCHEMA)

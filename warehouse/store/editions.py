@@ -27,10 +27,10 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.method.definition import Method
 from pipeline.method.reading import parse_method
-from pipeline.register.register import with_empty_thwart
+from pipeline.register.register import add_empty_thwart
 from pipeline.tables.curves import Curves
 from pipeline.tables.register import Register
-from warehouse.store.files import TEMPORARY_PREFIX, folder_written_beside
+from warehouse.store.files import TEMPORARY_PREFIX, write_folder_beside
 from warehouse.store.store import Store
 
 Kind = Literal["recomputed", "as_printed"]
@@ -192,7 +192,7 @@ def check_new_name(store: Store, edition: str) -> None:
         )
 
 
-def manifest_path(path: Path) -> Path:
+def find_manifest(path: Path) -> Path:
     """Return the manifest of an edition, under its name of now or of before."""
     older = path / OLDER_MANIFEST
     return older if older.exists() else path / MANIFEST
@@ -204,7 +204,7 @@ def read_manifest(path: Path) -> Manifest:
     Raises:
         BrokenPromiseError: its manifest is missing or cannot be read.
     """
-    file = manifest_path(path)
+    file = find_manifest(path)
     try:
         if not file.is_file():  # to read a pipe would wait for ever
             raise FileNotFoundError(file.name)
@@ -262,7 +262,7 @@ def read_edition(store: Store, edition: str) -> Edition:
     names = [name.removesuffix(PARQUET) for name in manifest.files if name.endswith(PARQUET)]
     tables = {name: read_table(path, name) for name in names}
     if CHANGES in tables:
-        tables[CHANGES] = with_empty_thwart(tables[CHANGES])
+        tables[CHANGES] = add_empty_thwart(tables[CHANGES])
     method = None
     if manifest.kind == "recomputed":
         text = (path / METHOD).read_text(encoding="utf-8")
@@ -270,7 +270,7 @@ def read_edition(store: Store, edition: str) -> Edition:
     return Edition(manifest, tables, method)
 
 
-def method_of_edition(store: Store, edition: str) -> Method:
+def read_edition_method(store: Store, edition: str) -> Method:
     """Return the method that an edition was made with, as it was then.
 
     Raises:
@@ -303,7 +303,7 @@ def read_table(path: Path, name: str) -> pl.DataFrame:
         ) from error
     if name not in LATER_COLUMNS:
         return frame
-    frame = with_empty_thwart(frame) if name == "register" else frame
+    frame = add_empty_thwart(frame) if name == "register" else frame
     later = {n: c.dtype for n, c in LATER_COLUMNS[name].columns().items() if c.nullable}
     missing = [pl.lit(None, t).alias(n) for n, t in later.items() if n not in frame.columns]
     return frame.with_columns(missing)
@@ -325,7 +325,7 @@ def write_folder(store: Store, edition: str, contents: Callable[[], Mapping[str,
         target.parent.mkdir(parents=True, exist_ok=True)
         with _one_at_a_time(target.parent):
             check_new_name(store, edition)
-            with folder_written_beside(target) as beside:
+            with write_folder_beside(target) as beside:
                 for name, content in contents().items():
                     (beside / name).write_bytes(content)
     except OSError as error:

@@ -14,7 +14,7 @@ TEMPORARY_PREFIX = ".herijk-"
 
 
 @contextmanager
-def written_beside(path: Path) -> Iterator[Path]:
+def write_beside(path: Path) -> Iterator[Path]:
     """Yield a temporary path in the same folder; rename it to `path` if all went well.
 
     The content is synced before the rename, and the rename replaces an older file at once; after
@@ -35,7 +35,7 @@ def written_beside(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def folder_written_beside(target: Path) -> Iterator[Path]:
+def write_folder_beside(target: Path) -> Iterator[Path]:
     """Yield a temporary folder; put it in the place of `target` if all went well.
 
     All files are synced first. The older folder is renamed before, so for a moment there is none.

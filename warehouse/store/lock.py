@@ -21,7 +21,7 @@ _NOT_OURS: Final = {"audit", "dagster", "editions"}
 
 
 @contextmanager
-def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
+def hold_write_lock(root: Path, wait: bool = False) -> Iterator[None]:
     """Keep other writers out of a data folder; what dead ones left half-written is removed.
 
     Args:

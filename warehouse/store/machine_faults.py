@@ -95,7 +95,7 @@ REASSURANCE: Final = say("Earlier results are intact, and finished work is kept.
 
 
 @contextmanager
-def machine_faults_explained(root: Path) -> Iterator[None]:
+def explain_machine_faults(root: Path) -> Iterator[None]:
     """Replace errors of the machine by a message that says what to do; others propagate.
 
     Raises:

@@ -19,7 +19,7 @@ from pipeline.method.reading import (
     read_shipped_text,
 )
 from pipeline.toml_text import decoded
-from warehouse.store.files import written_beside
+from warehouse.store.files import write_beside
 from warehouse.store.store import Store
 
 SUFFIX: Final = ".toml"
@@ -80,7 +80,7 @@ class KnownMethods:
             raise MissingKnowledgeError(
                 "there is no method {!r}; the methods are {}", name, ", ".join(self.names)
             )
-        return text_of_file(self.folder / f"{name}{SUFFIX}")
+        return read_method_file(self.folder / f"{name}{SUFFIX}")
 
     def named(self, name_or_file: str) -> Method:
         """Read a method by its name, or from a file anywhere.
@@ -95,7 +95,7 @@ class KnownMethods:
                     "{} is no method file: the name of one ends in {}", file, SUFFIX
                 )
             return self.get(name_or_file)
-        return parse_method(text_of_file(file), str(file), self.text)
+        return parse_method(read_method_file(file), str(file), self.text)
 
     def kept(self, name_or_file: str) -> str:
         """Return the name under which a method is known; a file is first copied into the folder.
@@ -112,8 +112,8 @@ class KnownMethods:
                 name_or_file,
                 method.name,
             )
-        with written_beside(self.folder / f"{method.name}{SUFFIX}") as beside:
-            beside.write_text(text_of_file(Path(name_or_file)), encoding="utf-8")
+        with write_beside(self.folder / f"{method.name}{SUFFIX}") as beside:
+            beside.write_text(read_method_file(Path(name_or_file)), encoding="utf-8")
         return method.name
 
 
@@ -140,7 +140,7 @@ def _held(store: Store) -> list[str]:
     return [] if store.made_from("methods") is None else store.read("methods")["method"].to_list()
 
 
-def text_of_file(file: Path) -> str:
+def read_method_file(file: Path) -> str:
     """Read the text of a method file.
 
     Raises:

@@ -20,7 +20,7 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.messages import say
-from warehouse.store.files import written_beside
+from warehouse.store.files import write_beside
 from warehouse.store.machine_faults import is_machine_fault
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
@@ -34,7 +34,7 @@ def fingerprint(*parts: object) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def table_digest(frame: pl.DataFrame) -> str:
+def digest_table(frame: pl.DataFrame) -> str:
     """Return a hash of a table's values as they are read: 13 significant digits, in row order."""
     lists = [c for c, dtype in frame.schema.items() if isinstance(dtype, pl.List)]
     flat = frame.with_columns(pl.col(lists).list.join("\x1f")) if lists else frame
@@ -92,7 +92,7 @@ class Store:
 
     def write(self, table: str, frame: pl.DataFrame, made_from: str = "", failed: str = "") -> None:
         """Write a table with the fingerprint of what it was made from."""
-        about = {FINGERPRINT_KEY: made_from, CONTENTS_KEY: contents_of(table, frame)}
+        about = {FINGERPRINT_KEY: made_from, CONTENTS_KEY: digest_contents(table, frame)}
         about |= {FAILED_KEY: failed} if failed else {}
         write_parquet(frame, self.table_path(table), about)
 
@@ -109,22 +109,22 @@ class Store:
 
     def made_from(self, table: str) -> str | None:
         """Fingerprint of what a table was made from; None if it is not there or is damaged."""
-        return metadata_of(self.table_path(table), FINGERPRINT_KEY)
+        return read_file_metadata(self.table_path(table), FINGERPRINT_KEY)
 
     def contents(self, table: str) -> str | None:
         """Hash of what is in a table: equal for equal tables, whatever they were made from."""
-        return metadata_of(self.table_path(table), CONTENTS_KEY)
+        return read_file_metadata(self.table_path(table), CONTENTS_KEY)
 
     def failed(self, table: str) -> str | None:
         """Return the traceback of a table whose rows are missing because our code failed."""
-        return metadata_of(self.table_path(table), FAILED_KEY)
+        return read_file_metadata(self.table_path(table), FAILED_KEY)
 
     def count_rows(self, table: str) -> int:
         """Rows of a table; raises as `read_parquet`."""
         return count_rows(self.table_path(table))
 
 
-def contents_of(name: str, frame: pl.DataFrame) -> str:
+def digest_contents(name: str, frame: pl.DataFrame) -> str:
     """Return a hash of what a table says; where an archive lies says nothing about it."""
     told = frame.drop("root") if name == "about_archive" else frame
     hashed = hashlib.sha256(str(told.schema).encode())
@@ -140,7 +140,7 @@ def archive_root(store: Store) -> Path | None:
     return root if root.is_dir() else None
 
 
-def no_warehouse(store: Store) -> MissingKnowledgeError:
+def make_no_warehouse_error(store: Store) -> MissingKnowledgeError:
     """Return the error about a data folder in which nothing was ever rebuilt."""
     return MissingKnowledgeError(
         "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
@@ -193,7 +193,7 @@ def read_parquet(
         return pl.DataFrame(pl.from_arrow(file.read(columns, use_threads=use_threads)))
 
 
-def metadata_of(path: Path, key: str) -> str | None:
+def read_file_metadata(path: Path, key: str) -> str | None:
     """Return what a file says of itself under a key; None if it says nothing or is damaged."""
     if not path.exists():
         return None
@@ -244,7 +244,7 @@ def write_parquet(
     tight = pa.Table.from_arrays(table.columns, schema=_tight_schema(table))
     packed = _table_form(table.schema) if form is None else form
     with (
-        written_beside(path) as target,
+        write_beside(path) as target,
         pq.ParquetWriter(target, tight.schema, write_page_checksum=True, **packed) as writer,
     ):
         writer.write_table(tight)

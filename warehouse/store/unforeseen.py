@@ -14,7 +14,7 @@ from typing import Final
 
 from pipeline.errors import BrokenPromiseError, HerijkError
 from pipeline.messages import Sentence, say
-from warehouse.store.files import written_beside
+from warehouse.store.files import write_beside
 from warehouse.store.machine_faults import is_machine_fault
 
 UNFORESEEN: Final = "unforeseen"
@@ -37,7 +37,7 @@ def in_short(error: BaseException) -> str:
     return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
 
 
-def traced(error: BaseException) -> str:
+def format_traceback(error: BaseException) -> str:
     """Return the traceback as text."""
     return "".join(traceback.format_exception(error))
 
@@ -54,7 +54,7 @@ def sentence(tow_id: str, told: str) -> Sentence:
 
 def note(root: Path, what: str, trace: str) -> None:
     """Keep the traceback of a failure in the data folder."""
-    with written_beside(_file(root, what)) as beside:
+    with write_beside(_file(root, what)) as beside:
         beside.write_text(trace, encoding="utf-8")
 
 
@@ -72,7 +72,7 @@ def border(root: Path, what: str, failed: list[str] | None = None) -> Iterator[N
     except BaseException as error:
         if not is_unforeseen(error):
             raise
-        note(root, what, traced(error))
+        note(root, what, format_traceback(error))
         if failed is not None:
             failed.append(what)
     else:

@@ -3,8 +3,8 @@
 import pytest
 
 from herijk.simulate import Defects, WorldSettings, simulate_tow, simulate_world
-from herijk.simulate.papers import RACE_KM, printed_register, race
-from herijk.simulate.practice import practice_of, practices, printed_curve
+from herijk.simulate.papers import RACE_KM, print_register, race
+from herijk.simulate.practice import find_practice, practices, print_curve
 from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import measure
@@ -21,14 +21,14 @@ def curves_of(world):
     """What was printed of every tow, by each practice."""
     simulated = ((tow, *simulate_tow(world, tow)) for tow in world.tows)
     return {
-        tow.tow_id: {p: printed_curve(samples, runs, tow, p) for p in practices(tow.season)}
+        tow.tow_id: {p: print_curve(samples, runs, tow, p) for p in practices(tow.season)}
         for tow, samples, runs in simulated
     }
 
 
 def test_boats_without_a_valid_tow_carry_the_pair_that_gives_cw_1(perfect):
     towed = {(t.boat.index, t.crew_class): t for t in perfect.tows if t.season <= 2012}
-    printed = printed_register(perfect, 2012, curves_of(perfect))
+    printed = print_register(perfect, 2012, curves_of(perfect))
     for line in printed:
         newest = towed.get((line.boat.index, line.crew_class))
         assert (line.tow_day is None) == (newest is None)
@@ -46,7 +46,7 @@ def test_as_published_repeats_what_was_printed(season, most):
     made = recompute(read_shipped_method("as-published"), measured.tows, measured.blocks).curves
     again, curves = dict(made.select("tow_id", "cw_kg_m").rows()), curves_of(world)
     for tow in world.tows:
-        a, b = curves[tow.tow_id][practice_of(season, 2020)]
+        a, b = curves[tow.tow_id][find_practice(season, 2020)]
         cw = a / (1.0 - (tow.declared_speed_m_s / b) ** 2)
         assert cw == pytest.approx(again[tow.tow_id], rel=most)
 

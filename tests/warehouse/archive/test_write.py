@@ -9,12 +9,12 @@ from polars.testing import assert_frame_equal
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
 from herijk.simulate.archive_writer import (
     SPELLINGS,
-    spelling_of,
+    find_spelling,
     truth_path,
     write_simulated_archive,
 )
-from herijk.simulate.papers import printed_register
-from herijk.simulate.practice import practices, printed_curve
+from herijk.simulate.papers import print_register
+from herijk.simulate.practice import practices, print_curve
 from pipeline.errors import HerijkError, MissingKnowledgeError
 from tests.warehouse.archive.conftest import Archive
 from tests.worlds import run_rows, tow_rows
@@ -71,7 +71,7 @@ def test_every_allowed_spelling_occurs():
         assert used(choice) == {True, False}
     # A comma cannot both separate and mark decimals.
     assert not any(s.separator == "," and s.decimal_comma for s in SPELLINGS)
-    assert len({spelling_of(season) for season in SETTINGS.seasons}) == len(SPELLINGS)
+    assert len({find_spelling(season) for season in SETTINGS.seasons}) == len(SPELLINGS)
 
 
 def test_truth_lies_beside_the_archive_and_never_in_it(archive, world):
@@ -150,11 +150,11 @@ def test_what_was_simulated_is_what_is_read_whatever_the_spelling(archive, world
         # Three decimals in the unit of the file.
         assert_frame_equal(scan.good[tow.tow_id], samples, abs_tol=5.1e-3, rel_tol=1e-6)
         by = practices(tow.season)
-        curves[tow.tow_id] = {p: printed_curve(samples, runs, tow, p) for p in by}
+        curves[tow.tow_id] = {p: print_curve(samples, runs, tow, p) for p in by}
     read, faults = read_published_registers(archive)
     assert faults == []
     for season in read["season"].unique():
-        lines = printed_register(world, season, curves)
+        lines = print_register(world, season, curves)
         printed = read.filter(season=season)
         assert printed["fsn_no"].to_list() == [line.boat.fsn_no for line in lines]
         for column in ("cw_kg_m", "b_m_s", "declared_speed_m_s"):
