@@ -19,7 +19,7 @@ export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
 	@echo "make test   run all tests but those below"
-	@echo "make test-more  run the tests in a browser and those that kill processes"
+	@echo "make test-more  run the tests that rebuild again and again, use a browser, or kill processes"
 	@echo "make slow   run the tests that take half a minute and more each"
 	@echo "make texts  find the texts that are said, and put those without Dutch in $(TEXTS)"
 	@echo "make lint   check style, types, imports and the Dagster definitions"

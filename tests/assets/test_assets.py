@@ -72,6 +72,7 @@ def test_after_a_run_dagster_calls_nothing_stale_and_a_change_what_follows(bench
         assert stale(ask) == set()
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "name", ["type_consistency", "curves", "register", "tows", "site", "report"]
 )
@@ -82,6 +83,7 @@ def test_an_asset_can_be_made_alone(name, bench, built, instance):
         assert_frame_equal(bench.store.read(name), built.store.read(name))
 
 
+@pytest.mark.more
 def test_a_damaged_table_is_made_again_by_a_second_run(bench, built, instance):
     path = bench.store.table_path("tows")
     content = path.read_bytes()
@@ -120,6 +122,7 @@ def test_verdicts_on_types_are_shown_on_their_table(bench, instance):
         assert {t: shown[name].metadata[t].value for t in own} == own
 
 
+@pytest.mark.more
 def test_what_matters_is_set_by_the_federation_and_decides_the_verdict(bench, instance):
     before = bench.store.read("type_consistency")
     (bench.data / "beheer.toml").write_text("difference_cw = 0.9\n")

@@ -146,6 +146,7 @@ def tell_of_success(bench, settings, result, instance):
     rebuild_succeeded(settings, bench.data, is_served=True)(context)
 
 
+@pytest.mark.more
 def test_a_night_without_a_change_does_no_work_and_mails_nothing(bench, mailed):
     settings, taken = mailed
     before = bench.lake_files(), bench.store.database.stat().st_mtime_ns
@@ -160,6 +161,7 @@ def test_a_night_without_a_change_does_no_work_and_mails_nothing(bench, mailed):
     assert taken == []
 
 
+@pytest.mark.more
 def test_a_night_with_news_mails_it(bench, mailed):
     settings, taken = mailed
     spoil(samples_files(bench, 2009)[3])
@@ -172,6 +174,7 @@ def test_a_night_with_news_mails_it(bench, mailed):
     assert "GESIMULEERD" in mail
 
 
+@pytest.mark.more
 def test_a_night_that_fails_is_mailed_with_why(bench, mailed):
     settings, taken = mailed
     shutil.rmtree(bench.archive)
@@ -188,6 +191,7 @@ def test_a_night_that_fails_is_mailed_with_why(bench, mailed):
     assert f"There is no archive at {bench.archive}" in mail.replace("=\r\n", "")
 
 
+@pytest.mark.more
 def test_no_job_publishes():
     """The code that publishes is not even loaded where jobs run."""
     found = subprocess.run(

@@ -43,6 +43,7 @@ def mounted(folder, size):
         pytest.skip("may not mount a disk here")
 
 
+@pytest.mark.more
 def test_a_full_disk_leaves_the_old_tables_and_the_next_run_goes_on(bench, built, tmp_path):
     """A disk with room for what is there and a little more, filled while it works."""
     used = sum(f.stat().st_size for f in bench.data.rglob("*") if f.is_file())
@@ -156,6 +157,7 @@ except UnavailableError as error:
 """
 
 
+@pytest.mark.more
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
 def test_in_a_folder_of_somebody_else_it_stops_with_the_way_out(bench, built):
     for folder in (bench.data, *bench.data.parents[:3]):
@@ -224,6 +226,7 @@ def test_a_damaged_database_is_made_again_by_the_next_run(bench, built):
         assert_same_tables(bench.tables(), built.tables())
 
 
+@pytest.mark.more
 def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypatch):
     """The file is another than the one that was hashed: its samples would be kept as that one's."""
     read = mended_while_read(bench, monkeypatch)
@@ -232,6 +235,7 @@ def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypat
     assert_same_tables(bench.tables(), built.tables())
 
 
+@pytest.mark.more
 def test_an_archive_that_never_stops_changing_is_left_alone(bench, built, monkeypatch):
     file = samples_files(bench, 2009)[3]
     spoil(file)

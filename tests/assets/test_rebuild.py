@@ -15,6 +15,8 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from tests.conftest import METHODS, SMALL, STUDIES, Workbench
 from warehouse.store.store import digest_table
 
+pytestmark = pytest.mark.more
+
 TOWS_2009 = "sleeplijsten/sleeplijst_2009.csv"
 ONE = METHODS[:1]
 """Enough where a test is not about methods."""

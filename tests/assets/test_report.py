@@ -26,6 +26,7 @@ def latest(bench):
     return json.loads((bench.data / "report" / "latest.json").read_text("utf-8"))
 
 
+@pytest.mark.more
 def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     file = samples_files(bench, 2009)[3]
     gone, kept = tow_of(bench, file), spoil(file)
@@ -74,6 +75,7 @@ def test_a_log_factor_that_shows_the_same_did_not_move(bench):
     assert {row["season"] for row in change_report(bench.store).factors} == {2014}
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("spoilt", [b"", b"PAR1"])
 def test_a_damaged_memory_of_the_last_report_makes_the_next_the_first(bench, spoilt):
     (reported_path(bench.store) / "tows.parquet").write_bytes(spoilt)
@@ -92,6 +94,7 @@ def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):
     assert first(Speech("en")) == "Seasons of which the archive has no tow any more: 2002"
 
 
+@pytest.mark.more
 def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, monkeypatch):
     bench.rebuild()
     spoil(samples_files(bench, 2009)[3])

@@ -10,6 +10,8 @@ from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from tests.conftest import Workbench
 
+pytestmark = pytest.mark.more
+
 TOW_LIST = "sleeplijsten/sleeplijst_2014.csv"
 BOATS = "sloepregister/sloependata.csv"
 METHODS = ["rebased", "as-published"]

@@ -23,6 +23,7 @@ def test_every_line_of_the_register_is_on_the_list(built):
     assert last_race >= last_tow
 
 
+@pytest.mark.more
 def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
     due = bench.table("due_list").filter(pl.col("method") == METHOD, status="valid")
     line = due.row(0, named=True)

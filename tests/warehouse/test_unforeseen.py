@@ -24,6 +24,8 @@ from tests.conftest import METHODS, Workbench, shared
 from warehouse.archive.judgement import Judgement
 from warehouse.derive import recomputing
 
+pytestmark = pytest.mark.more
+
 TINY = WorldSettings(seasons=(2010, 2014), tows_per_season=11, rate_hz=10, seed=5)
 TOW = "2014-004"
 SEEDED = 8
