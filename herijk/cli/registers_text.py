@@ -134,6 +134,12 @@ def seasons(report: "LogErrorReport") -> Iterator[Part]:
         empty=tell("nothing was found, and nothing is in doubt"),
         note=tell(season.DIAGNOSIS),
     )
+    yield Section(
+        tell("Level of each season, against what its boats show in other seasons:"),
+        rows=report.levels,
+        columns="season verdict size size_lo size_hi unit",
+        note=tell(season.LEVEL),
+    )
 
 
 def _or_else(confused_with: str | None) -> list[str]:

@@ -8,8 +8,10 @@ from typing import Final
 
 import numpy as np
 import polars as pl
+import scipy
 
 from pipeline.arrays import FloatArray, IntArray
+from pipeline.quantiles import LEVEL as INTERVAL_LEVEL
 from pipeline.quantiles import NORMAL
 from pipeline.season_log.archive import LOG, Archive
 from pipeline.season_log.factors import ESTIMATED, NOT_DETERMINED, NOT_SETTLED
@@ -22,6 +24,7 @@ from pipeline.season_log.observation_model import (
     ZERO,
     ZERO_DRIFT,
 )
+from pipeline.season_log.season_levels import SeasonLevel, compare_season_levels
 from pipeline.tables.frames import dtypes
 from pipeline.tables.season_log import SeasonDiagnosis, SeasonSteps
 
@@ -45,6 +48,15 @@ WOULD_NOT_SHOW: Final = "would not show"
 LOAD_CELL: Final = (FORCE, ZERO, ZERO_DRIFT)
 ALTERED_BOAT: Final = "altered_boat"
 """What a fault that one boat alone shows may be instead."""
+SEASON_LEVEL: Final = "season_level"
+"""What all tows of a season have in common (`season_levels`), among the instruments."""
+LEVEL_CAUSES: Final = ("mass_on_board", "water_depth", "waves", "force_not_linear")
+"""What a level of a season may be that is no fault of the model."""
+MAX_LEVEL: Final = np.log(1.02)
+"""Level in ln Cw from which a person should look: two tows agree within 2 % (P2015)."""
+MAX_LEVEL_HALF_WIDTH: Final = 2.0 * MAX_LEVEL
+"""Half width of the interval of a level beyond which it would not show. It is passed where nothing
+but the bend tells the level from the log."""
 
 STEP_SCHEMA: Final = dtypes(SeasonSteps, without=["method"])
 DIAGNOSIS_SCHEMA: Final = dtypes(SeasonDiagnosis, without=["method"])
@@ -75,7 +87,42 @@ def diagnose_seasons(posterior: Posterior) -> pl.DataFrame:
         | _diagnose_instrument(posterior, name, np.array(instruments[season, part, name]))
         for season, part, name in sorted(instruments)
     ]
-    return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA)
+    levels = compare_season_levels(posterior.fit)
+    rows += [
+        {"season": season, "part": 0, "rests_on": evidence[season][1]}
+        | _diagnose_level(level, len(levels), posterior.fit.has_converged)
+        for season, level in levels.items()
+    ]
+    return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA).sort("season", "part", "instrument")
+
+
+def _diagnose_level(level: SeasonLevel, n_seasons: int, has_converged: bool) -> dict[str, object]:
+    """Return the diagnosis of what all tows of a season have in common.
+
+    It is an alarm where it is 2 % or more and its interval excludes none. The interval holds for
+    all seasons together with 95 % (Bonferroni): of ten seasons one would else be an alarm by chance
+    in every other archive with plain GPS.
+    """
+    error_rate = (1.0 - INTERVAL_LEVEL) / n_seasons
+    half_width = float(scipy.special.ndtri(1.0 - 0.5 * error_rate)) * level.sd
+    is_alarm = abs(level.ln_ratio) >= max(MAX_LEVEL, half_width)
+    if not has_converged:
+        verdict = NOT_SETTLED
+    elif half_width > MAX_LEVEL_HALF_WIDTH:
+        verdict = WOULD_NOT_SHOW
+    else:
+        verdict = ALARM if is_alarm else SOUND
+    return {
+        "instrument": SEASON_LEVEL,
+        "unit": "1",
+        "estimate": level.ln_ratio,
+        "lo": level.ln_ratio - half_width,
+        "hi": level.ln_ratio + half_width,
+        "distance_sd": level.ln_ratio / level.sd,
+        "verdict": verdict,
+        "alarm": verdict in (ALARM, NOT_SETTLED),
+        "confused_with": ", ".join(LEVEL_CAUSES) if verdict == ALARM else None,
+    }
 
 
 def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> dict[str, object]:
@@ -115,6 +162,9 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
         would_show = bool(posterior.would_show[candidates].any())
         verdict = _judge_fault(probability, distance, would_show)
     has_too_few_boats = unresolved is not None or not posterior.has_boats[candidates].all()
+    confusions = _list_confusions(posterior, columns, candidates, has_too_few_boats)
+    if name == FORCE and verdict == FAULT:
+        confusions += [cause for cause in LEVEL_CAUSES if cause not in confusions]
     return {
         "unit": "N" if name in (ZERO, ZERO_DRIFT) else "1",
         "estimate": estimate,
@@ -126,7 +176,7 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
         "alarm": verdict in (FAULT, ALARM, NOT_SETTLED) or unresolved is not None,
         "first_tow": first_tow,
         "shown_by": None if unresolved is None else ", ".join(unresolved.boats),
-        "confused_with": _list_confusions(posterior, columns, candidates, has_too_few_boats),
+        "confused_with": ", ".join(confusions) or None,
     }
 
 
@@ -177,7 +227,7 @@ def _judge_log(posterior: Posterior, column: int) -> str:
 
 def _list_confusions(
     posterior: Posterior, columns: IntArray, candidates: IntArray, has_too_few_boats: bool
-) -> str | None:
+) -> list[str]:
     """Return what these faults pass for while they do not show, and what would pass for them.
 
     Args:
@@ -194,7 +244,7 @@ def _list_confusions(
         labels.append(ALTERED_BOAT)
         others = [effect for effect in others if effect.name not in BOAT_EFFECTS]
     labels += [label for label in dict.fromkeys(e.label for e in others) if label not in own]
-    return ", ".join(labels) or None
+    return labels
 
 
 def _describe_evidence(archive: Archive) -> dict[int, tuple[int, str]]:

@@ -58,8 +58,9 @@ class SeasonDiagnosis(PerPart):
         "log_scale, log_trend (end of the season against its middle), log_change (from a tow on), "
         "gps_scale (plain GPS), force_scale, force_zero, force_zero_drift (end against middle), "
         "anemometer_scale (wind read / wind), season_bend (the bend of all boats as this season's "
-        "logs show it), water_temperature (not recorded), or fleet_step (all boats changed with "
-        "this season)",
+        "logs show it), water_temperature (not recorded), fleet_step (all boats changed with "
+        "this season), or season_level (all tows of the season against the other tows of their "
+        "boats, with instruments corrected for what was found of them)",
         primary_key=True,
     )
     unit = column.text("1 for the logarithm of a factor, N for a force")
@@ -75,8 +76,9 @@ class SeasonDiagnosis(PerPart):
     verdict = column.text(
         "sound, would not show (one of the usual size would not be found), fault (likelier than "
         "not), cannot be told (10 to 50 %, or one boat alone shows it), alarm (4 standard "
-        "deviations apart); of a log's factor estimated or not determined; not settled (the search "
-        "did not come to rest: no estimate of the method can be relied on)",
+        "deviations apart; of a level 2 % and beyond its interval); of a log's factor estimated or "
+        "not determined; not settled (the search did not come to rest: no estimate of the method "
+        "can be relied on)",
         regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined"
         "|not settled)$",
     )

@@ -312,6 +312,40 @@ def test_a_fault_of_the_load_cell_is_found_beside_dgps_and_corrected():
     assert corrected.height == found.tows.filter(pl.col("season") == 2016).height
 
 
+def level_of(found, season):
+    return found.diagnosis.row(
+        by_predicate=(pl.col("instrument") == "season_level") & (pl.col("season") == season),
+        named=True,
+    )
+
+
+@pytest.mark.parametrize("ratio", [1.03, 0.97])
+def test_a_season_whose_tows_all_lie_off_their_other_tows_raises_an_alarm(ratio):
+    tows = simulate(CLEAN, 900).tows
+    moved = pl.col("ln_cw") + pl.when(pl.col("season") == 2016).then(math.log(ratio)).otherwise(0.0)
+    found = estimate_season_factors(tows.with_columns(moved))
+    assert not estimate_season_factors(tows).diagnosis["alarm"].any()
+    alarms = found.diagnosis.filter("alarm")
+    assert alarms["season"].unique().to_list() == [2016]
+    for cause in ("mass_on_board", "water_depth", "waves", "force_not_linear"):
+        assert cause in alarms["confused_with"][0]
+
+
+def test_sound_seasons_lie_level_with_their_neighbours():
+    for seed in (900, 902):
+        _, found = estimated(CLEAN, seed)
+        levels = found.diagnosis.filter(instrument="season_level")
+        assert levels["season"].to_list() == found.diagnosis["season"].unique().sort().to_list()
+        assert not levels["alarm"].any()
+
+
+def test_a_season_without_gps_does_not_tell_its_level_from_its_log():
+    _, found = estimated(CLEAN, 900)
+    level = level_of(found, 2009)
+    assert level["verdict"] == "would not show"
+    assert level["hi"] - level["lo"] > 0.08
+
+
 def test_where_logs_alone_tell_a_load_cell_a_little_off_would_not_show():
     found = estimate_season_factors(simulate(replace(CLEAN, force_step=(2010, 0.04)), 1).tows)
     rows = found.diagnosis.select("season", "instrument", "verdict", "confused_with").rows()
