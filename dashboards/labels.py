@@ -380,7 +380,6 @@ CODES: Final[dict[str, Sentence]] = {
     "printed_rebased": say("printed, re-based in closed form"),
     "speed.factor": say("divide instead of multiply"),
     "run_point.estimator": say("run point from means"),
-    "wind.coefficients": say("air coefficient from archive"),
     "wind.averaging_s": say("wind averaged over 3 s"),
     "curve.b": say("B without cap"),
     "doubted": say("to be looked at first"),

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cache, cached_property
 from importlib import resources
 from types import MappingProxyType
-from typing import Annotated, Any, Final, Literal, NamedTuple
+from typing import Annotated, Any, Final, Literal, NamedTuple, get_args
 
 from pydantic import (
     AfterValidator,
@@ -128,11 +128,8 @@ class Wind(_Options):
     """How the resistance in air is taken off."""
 
     model: Literal["head", "oblique"] = _option("proposed", say('P2015, "Dwarse tegenwind"'))
-    coefficients: Literal["fixed", "per_run", "archive"] = _option(
-        "proposed",
-        say('P2015, "Windweerstand"'),
-        "fixed",
-        but={"archive": Basis("proposed", say("this project; appendix 5"))},
+    coefficients: Literal["fixed", "per_run"] = _option(
+        "proposed", say('P2015, "Windweerstand"'), "fixed"
     )
     ahead: float = _option("proposed", say('P2015, "Windweerstand"'), 0.5, 0.0, 2.0)
     behind: float = _option("proposed", say('P2015, "Windweerstand"'), 0.5, 0.0, 2.0)
@@ -413,8 +410,8 @@ def parse_method(
         text: TOML.
         file_name: for error messages.
         text_of: gives the text of a method that this one extends.
-        published: of an edition; options that there are no longer are left out, so that it can be
-            shown. Its hash says that it is another method.
+        published: of an edition; options and values that there are no longer are left out, so that
+            it can be shown. Its hash says that it is another method.
 
     Raises:
         MethodFileError: with file, line, key and what is allowed.
@@ -611,9 +608,16 @@ def _step_tables(
 
 
 def _still_there(step: str, options: Mapping[str, object]) -> dict[str, object]:
-    """The options of a step that there still are."""
-    known = _keys_at(Steps, [step])
-    return {name: value for name, value in options.items() if name in known}
+    """Return the options of a step that there still are, with a value that they still have."""
+    model = Steps.model_fields[step].annotation
+    fields = {} if model is None else model.model_fields
+    kept = {}
+    for name, value in options.items():
+        if name in fields:
+            choices = get_args(fields[name].annotation)
+            if not choices or value in choices:
+                kept[name] = value
+    return kept
 
 
 def _refuse_overlap(reader: _Reader, layers: list[_Layer]) -> None:

@@ -178,14 +178,10 @@ def _facts_at_any_speed(
         tow_log_sd = np.where(c.speed.is_calibrated, 0.0, log_sd)
     bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual_bend)
 
-    # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
-    # taken off, and only what is put back for still air has it.
-    by_archive = c.plan.run_options.wind.coefficients == "archive"
-    net_air = np.where(by_archive, 0.0, c.air_kg_m) - c.still_air_kg_m
+    net_air = c.air_kg_m - c.still_air_kg_m
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_per_unit = c.still_air_kg_m / np.maximum(c.air.drag.still, 1e-9)
     felt_per_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
-    coefficient_sd = np.where(np.isfinite(c.air.drag_sd), c.air.drag_sd, Assumed().wind_coefficient)
     return tows.frame.select(
         "tow_id",
         "season",
@@ -203,7 +199,6 @@ def _facts_at_any_speed(
         still_air_kg_m=pl.Series(tows.mean(c.still_air_kg_m, c.used)),
         wind_ln_sd=pl.Series(c.air.anemometer_ln_sd).fill_nan(None),
         wind_measured=pl.Series(tows.measured("wind")),
-        wind_coefficient=pl.Series(coefficient_sd),
         unmeasured_wind=pl.Series(c.air.unrecorded_sd),
         temperature_known=pl.Series(c.temperature.is_known),
         water_off_c=pl.Series(c.water_off_c),

@@ -96,7 +96,7 @@ def list_components(assumed: Assumed) -> dict[str, Component]:
     wind_scale_sd = col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
     wind = (
         pl.when(has_wind)
-        .then(col("air_per_coefficient") * col("wind_coefficient"))
+        .then(col("air_per_coefficient") * assumed.wind_coefficient)
         .otherwise(col("still_air_ratio") * col("unmeasured_wind"))
     )
     temperature_sd_c = (
@@ -142,10 +142,10 @@ def make_budget(facts: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
             the hull about its hyperbola; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
             season's ln factor (0 and any where calibrated), `tow_log_sd` of the log (0 where
             calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
-            ln Cw per unit of drag coefficient (both signed); `wind_coefficient`, standard deviation
-            of that coefficient; `wind_ln_sd`, of the anemometer's ln scale, null where it is taken
-            as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part /
-            Cw, and `unmeasured_wind`, standard deviation of the net correction over that;
+            ln Cw per unit of drag coefficient (both signed); `wind_ln_sd`, standard deviation of
+            the anemometer's ln scale, null where it is taken as it reads; `wind_measured`, and
+            where it was not `still_air_ratio`, still-air part / Cw, and `unmeasured_wind`, standard
+            deviation of the net correction over that;
             `temperature_known`; `water_off_c`, of the water from its day's; `mass_ln_sd`, of ln
             mass, 0 where it was weighed, and `water_change_ratio`, the correction for temperature /
             Cw, which goes with the root of the mass; `askew_ratio`, by being pulled askew, null
