@@ -109,11 +109,9 @@ def seasons(report: "LogErrorReport") -> Iterator[Part]:
         [furthest] if furthest else [],
         report.method,
         rows=report.factors,
-        columns=f"season {factor} cause",
-        heads={"cause": say("step is of")},
+        columns=f"season {factor}",
         note=tell(
-            "Step is of: whether the season differs by its log or by its load cell (force), as the "
-            "bend of the same boats' curves tells. Prescribed: nothing ties the season to one with "
+            "Prescribed: nothing ties the season to one with "
             "dGPS, so the method's own factor is used."
         ),
     )

@@ -192,7 +192,6 @@ def _facts_at_any_speed(
         calibrated=pl.Series(c.speed.is_calibrated),
         askew_ratio=pl.Series(c.estimated("askew_ratio")).fill_nan(None),
         log_sd=pl.Series(np.where(has_log, c.estimated("ln_sd"), 0.0)),
-        log_dof=pl.Series(np.where(has_log, c.estimated("dof"), np.inf)),
         tow_log_sd=pl.Series(tow_log_sd),
         net_air_kg_m=pl.Series(tows.mean(net_air, c.used)),
         air_per_coefficient_kg_m=pl.Series(tows.mean(still_per_unit - felt_per_unit, c.used)),

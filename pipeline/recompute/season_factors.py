@@ -76,7 +76,7 @@ def instruments_of(plan: Plan, rows: pl.DataFrame | None) -> pl.DataFrame:
     known = pl.DataFrame(schema=INSTRUMENTS) if rows is None else rows
     joined = own.join(known.select(*INSTRUMENTS), on="tow_id", how="left", maintain_order="left")
     # A tow that takes no part in the estimate had the instruments of its season all the same.
-    of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
+    of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd")
     filled = joined.with_columns(of_season.fill_null(of_season.mean().over("season", "log1_part")))
     asked = pl.Series(plan.options.speed.correction == "estimated")
     return filled.with_columns(

@@ -29,25 +29,10 @@ class SeasonLinks(PerPart):
     lo = column.lower("1")
     hi = column.upper("1")
     ln_sd = column.optional("1", "standard deviation of ln factor")
-    dof = column.optional("1", "its degrees of freedom")
     repeat_tows_sd = column.optional("1", "part of ln_sd by scatter of repeat tows")
     gps_sd = column.optional("1", "part of ln_sd by plain GPS")
     assumed_sd = column.optional(
         "1", "part of ln_sd by what is assumed of log, load cell and boats"
-    )
-
-
-class SeasonSteps(PerPart):
-    """Whether a season's step against the boats' other tows is the log's or the load cell's."""
-
-    n_boats = column.count("boats also towed in other seasons")
-    level_step = column.optional("1", "step of ln Cw, by the log as it reads")
-    level_step_sd = column.optional("1", "its standard deviation")
-    force_step = column.optional("1", "the part of it in ln force, as the bend shows")
-    force_step_sd = column.optional("1", "its standard deviation")
-    cause = column.text(
-        "log, force (a log error may have come with it), none (no step), or not told",
-        regex="^(log|force|none|not told)$",
     )
 
 
@@ -106,7 +91,6 @@ class TowInstruments(PerTow):
         "1", "of Cw, by being pulled askew: root mean square; 0 where that is unlikely", min=0
     )
     ln_sd = column.number("1", "their standard deviation in ln Cw / the elasticity 2 + 2 q", min=0)
-    dof = column.optional("1", "its degrees of freedom")
 
 
 class BestEstimateWeights(PerTow):

@@ -125,7 +125,7 @@ def list_components(assumed: Assumed) -> dict[str, Component]:
             pl.when(has_temperature).then(pl.lit("single")).otherwise(season),
         ),
         "straightness": Component(col("askew_ratio").fill_null(assumed.straightness_ratio)),
-        "season_log": Component(col("kappa") * col("log_sd"), season, col("log_dof")),
+        "season_log": Component(col("kappa") * col("log_sd"), season),
     }
 
 
@@ -139,8 +139,8 @@ def make_budget(facts: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
         facts: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part`; `kappa`, elasticity of Cw by a speed error; `random_ratio`, of the
             scatter of the run points, with `random_dof`; `force_n`, tow force; `misfit_ratio`, of
-            the hull about its hyperbola; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
-            season's ln factor (0 and any where calibrated), `tow_log_sd` of the log (0 where
+            the hull about its hyperbola; `calibrated` (on dGPS); `log_sd` of the season's ln
+            factor (0 where calibrated), `tow_log_sd` of the log (0 where
             calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
             ln Cw per unit of drag coefficient (both signed); `wind_ln_sd`, standard deviation of
             the anemometer's ln scale, null where it is taken as it reads; `wind_measured`, and

@@ -21,7 +21,7 @@ from warehouse.derive.registers import members_of
 from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen, sentence, traced
 
 METHOD_TABLES: Final = (
-    *("run_points", "curves", "log_factors", "season_links", "season_steps"),
+    *("run_points", "curves", "log_factors", "season_links"),
     *("season_diagnosis", "tow_instruments", "best_estimate_weights", "uncertainty_budget"),
     *("curve_points", "assessments", "ensemble"),
 )

@@ -116,13 +116,9 @@ WITH own AS (
     SELECT method, season, sum(n_tows) AS n_tows, sum(n_links) AS n_links,
            max(component) AS component
     FROM season_links GROUP BY method, season
-), step AS (
-    SELECT method, season, string_agg(DISTINCT cause, ', ' ORDER BY cause) AS cause
-    FROM season_steps GROUP BY method, season
 )
-SELECT f.season, f.factor, f.lo, f.hi, f.source, l.n_tows, l.n_links, l.component, s.cause
+SELECT f.season, f.factor, f.lo, f.hi, f.source, l.n_tows, l.n_links, l.component
 FROM log_factors AS f LEFT JOIN own AS l USING (method, season)
-LEFT JOIN step AS s USING (method, season)
 WHERE f.method = ? ORDER BY f.season
 """
 
