@@ -213,7 +213,10 @@ def combine(budget: pl.DataFrame) -> pl.DataFrame:
 
 
 def pool_scatter(
-    residual_ratio: FloatArray, is_used: BoolArray, group: FloatArray | IntArray
+    residual_ratio: FloatArray,
+    is_used: BoolArray,
+    group: FloatArray | IntArray,
+    parameters: int = CURVE_PARAMETERS,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the relative scatter of run points about their curves, pooled over groups of tows.
 
@@ -223,13 +226,14 @@ def pool_scatter(
         residual_ratio: (tows, points) (point - curve) / curve.
         is_used: (tows, points) whether a point counts.
         group: (tows,) the same for tows whose scatter is pooled.
+        parameters: number of parameters that were fitted to the points of each tow.
 
     Returns:
         Standard deviation and degrees of freedom of each tow's group, (tows,); infinite and 0 where
         no tow of the group has a point to spare.
     """
     _, place = np.unique(group, return_inverse=True)
-    spare_points = np.maximum(is_used.sum(axis=1) - CURVE_PARAMETERS, 0)
+    spare_points = np.maximum(is_used.sum(axis=1) - parameters, 0)
     counts = is_used & (spare_points > 0)[:, None]
     square = np.where(counts, residual_ratio**2, 0.0).sum(axis=1)
     dof = np.bincount(place, spare_points)[place].astype(np.float64)
