@@ -71,5 +71,5 @@ def test_a_hull_off_its_hyperbola_does_not_count_as_scatter():
         made = recompute(shipped_method("rebased"), world.tows, blocks, with_bands=False)
         budget = made.uncertainty_budget.group_by("component").agg(pl.col("u_ratio").mean())
         parts[name] = dict(budget.rows())
-    assert parts["humped"]["random"] == pytest.approx(parts["plain"]["random"], rel=0.02)
+    assert parts["humped"]["random"] == pytest.approx(parts["plain"]["random"], rel=0.05)
     assert parts["humped"]["misfit"] > 2.0 * parts["plain"]["misfit"]
