@@ -48,7 +48,7 @@ def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -
 
     Args:
         world: its name.
-        tables: `curves`, `log_factors`, and `season_diagnosis` or `season_steps`, of `rebased`.
+        tables: `curves`, `log_factors`, and `season_diagnosis`, of `rebased`.
         truth: `tow_id, season` and the fields of `TowTruth`.
     """
     doubted = seasons_said(tables, DOUBTED)
@@ -140,16 +140,12 @@ DOUBTED = (*NAMED, "cannot be told", "not determined")
 
 def seasons_said(tables: Mapping[str, pl.DataFrame], verdicts: tuple[str, ...]) -> set[int]:
     """Seasons of which the tables say such a thing of any instrument."""
-    if "season_diagnosis" in tables:
-        said = pl.col("verdict").is_in(verdicts)
-        return set(tables["season_diagnosis"].filter(said)["season"])
-    return set(tables["season_steps"].filter(pl.col("cause") == "force")["season"])
+    said = pl.col("verdict").is_in(verdicts)
+    return set(tables["season_diagnosis"].filter(said)["season"])
 
 
 def _not_told_apart(tables: Mapping[str, pl.DataFrame]) -> set[int]:
     """Seasons of which the tables say that a fault of the load cell would pass for the log."""
-    if "season_diagnosis" not in tables:
-        return set()
     said = (pl.col("instrument") == "force_scale") & (pl.col("verdict") == "would not show")
     return set(tables["season_diagnosis"].filter(said)["season"])
 

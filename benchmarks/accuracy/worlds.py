@@ -54,7 +54,7 @@ FIRST_SEED = 7000
 ONLY_FROM_FILES = ("dropouts",)
 """Worlds whose fault is for the reader of files."""
 METHOD = "rebased"
-TABLES = ("curves", "log_factors", "season_steps", "season_diagnosis", EQUAL_BOATS)
+TABLES = ("curves", "log_factors", "season_diagnosis", EQUAL_BOATS)
 
 Task = tuple[str, int, bool]
 

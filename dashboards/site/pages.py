@@ -191,6 +191,7 @@ def _seasons(views: Views, methods: Sequence[str]) -> Page:
             "repeats",
         ),
         _season_links(views),
+        _season_levels(views),
         _season_diagnosis(views),
     ]
     selects = [methods_select(methods)]
@@ -236,12 +237,28 @@ def _season_links(views: Views) -> Section:
     )
 
 
+def _season_levels(views: Views) -> Section:
+    """What all tows of each season have in common."""
+    levels = views.ask("season_diagnosis").filter(instrument="season_level")
+    columns = "season verdict size size_lo size_hi unit"
+    return Section(
+        "season_levels",
+        say("Level of each season"),
+        season.LEVEL,
+        tables=[Table("season_levels", levels, columns, follows=["method"])],
+        folded=True,
+    )
+
+
 SOUND_VERDICTS = ("sound", "estimated")
 
 
 def _season_diagnosis(views: Views) -> Section:
     """What may be wrong with the instruments of a season."""
-    doubted = views.ask("season_diagnosis").filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
+    is_level = (pl.col("instrument") == "season_level") & (pl.col("verdict") != "alarm")
+    doubted = views.ask("season_diagnosis").filter(
+        ~pl.col("verdict").is_in(SOUND_VERDICTS) & ~is_level
+    )
     # What else it could be: the kinds, without their seasons.
     rows = doubted.with_columns(
         PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")

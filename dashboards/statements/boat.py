@@ -386,6 +386,11 @@ FAULTS: Final = {
     ),
 }
 """What is said of a season, by the verdict on an instrument."""
+SEASON_LEVEL: Final = say(
+    "All boats towed in {season} lie {size} from what they show in other seasons. It may be mass "
+    "on board, the depth of the water, waves, or a load cell that is not linear. Someone should "
+    "look at it."
+)
 
 INSTRUMENT_OR_BOAT: Final = say(
     "In {season} {shown_by} came out unlike its other tows, and too few boats tell why: either an "
@@ -399,6 +404,8 @@ def _fault(fault: Row) -> Statement:
     """What may be wrong with one instrument."""
     chance = fault["p_fault"]
     wording, largest = FAULTS[fault["verdict"]], fault["size"]
+    if fault["instrument"] == "season_level" and fault["verdict"] == "alarm":
+        wording = SEASON_LEVEL
     if fault["shown_by"] is not None:
         wording, largest = INSTRUMENT_OR_BOAT, max(fault["size_lo"], fault["size_hi"], key=abs)
     size = Number(largest, 1, fault["unit"], sign="+")

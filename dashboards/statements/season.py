@@ -18,6 +18,14 @@ DIAGNOSIS: Final = say(
 )
 """How the table of faults of instruments is read."""
 
+LEVEL: Final = say(
+    "What all tows of a season have in common in Cw, with instruments corrected for what was found "
+    "of them. Alarm: 2 % or more, and more than its interval (95 % for all seasons together). It "
+    "may be mass on board, the depth of the water, waves, or a load cell that is not linear. Would "
+    "not show: without GPS, only the bend of the curves tells it from the log."
+)
+"""How the table of levels of seasons is read."""
+
 
 def log_factors(rows: pl.DataFrame) -> Statement | None:
     """Where the log was furthest off."""

@@ -109,11 +109,9 @@ def seasons(report: "LogErrorReport") -> Iterator[Part]:
         [furthest] if furthest else [],
         report.method,
         rows=report.factors,
-        columns=f"season {factor} cause",
-        heads={"cause": say("step is of")},
+        columns=f"season {factor}",
         note=tell(
-            "Step is of: whether the season differs by its log or by its load cell (force), as the "
-            "bend of the same boats' curves tells. Prescribed: nothing ties the season to one with "
+            "Prescribed: nothing ties the season to one with "
             "dGPS, so the method's own factor is used."
         ),
     )
@@ -133,6 +131,12 @@ def seasons(report: "LogErrorReport") -> Iterator[Part]:
         "shown_by confused_with",
         empty=tell("nothing was found, and nothing is in doubt"),
         note=tell(season.DIAGNOSIS),
+    )
+    yield Section(
+        tell("Level of each season, against what its boats show in other seasons:"),
+        rows=report.levels,
+        columns="season verdict size size_lo size_hi unit",
+        note=tell(season.LEVEL),
     )
 
 

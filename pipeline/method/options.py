@@ -112,11 +112,8 @@ class Wind(Declared):
     """How the resistance in air is taken off."""
 
     model: Literal["head", "oblique"] = _option("proposed", say('P2015, "Dwarse tegenwind"'))
-    coefficients: Literal["fixed", "per_run", "archive"] = _option(
-        "proposed",
-        say('P2015, "Windweerstand"'),
-        "fixed",
-        but={"archive": Basis("proposed", say("this project; appendix 5"))},
+    coefficients: Literal["fixed", "per_run"] = _option(
+        "proposed", say('P2015, "Windweerstand"'), "fixed"
     )
     ahead: float = _option("proposed", say('P2015, "Windweerstand"'), 0.5, 0.0, 2.0)
     behind: float = _option("proposed", say('P2015, "Windweerstand"'), 0.5, 0.0, 2.0)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from typing import Annotated, Any, Final, NamedTuple
+from typing import Annotated, Any, Final, NamedTuple, get_args
 
 from pydantic import AfterValidator, BaseModel, Field, ValidationError
 
@@ -109,8 +109,8 @@ def parse_method(
         text: TOML.
         file_name: for error messages.
         text_of: gives the text of a method that this one extends.
-        published: whether the text belongs to an edition. Options that no longer exist are then
-            left out, so that the method can be shown; its hash says that it is another method.
+        published: whether the text belongs to an edition. Options and values that no longer exist
+            are then left out, so that the method can be shown; its hash says that it is another.
 
     Raises:
         MethodFileError: with file, line, key and what is allowed.
@@ -269,7 +269,7 @@ def _read_layers(file: _MethodFile, leave_out_unknown: bool) -> list[_Layer]:
 
     Args:
         file: the file.
-        leave_out_unknown: leave out options that do not exist, in place of an error.
+        leave_out_unknown: leave out options and values that do not exist, in place of an error.
     """
     steps = _read_step_options(file, file.head.steps, "steps")
     overrides = []
@@ -297,11 +297,16 @@ def _read_step_options(file: _MethodFile, given: Mapping[str, Any], where: str) 
 
 
 def _leave_out_unknown(given: StepOptions) -> StepOptions:
-    """Return the options that exist today."""
-    known = {}
+    """Return the options that exist today, set to a value that they can have today."""
+    known: StepOptions = {}
     for step, options in given.items():
-        names = _list_keys(Steps, [step])
-        known[step] = {name: value for name, value in options.items() if name in names}
+        model = Steps.model_fields[step].annotation
+        fields = {} if model is None else model.model_fields
+        known[step] = {}
+        for name, value in options.items():
+            choices = get_args(fields[name].annotation) if name in fields else ()
+            if name in fields and (not choices or value in choices):
+                known[step][name] = value
     return known
 
 

@@ -17,7 +17,7 @@ from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
 from pipeline.tables.keys import LINE
 from pipeline.uncertainty.misfit import fit_parabolas, shrink_to_lines
-from pipeline.uncertainty.propagation import Assumed, pool_scatter
+from pipeline.uncertainty.propagation import CURVE_PARAMETERS, Assumed, pool_scatter
 
 DECLARED: Final = 1.0
 """The declared speed among speed ratios."""
@@ -27,6 +27,9 @@ CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(85
 
 MAX_R: Final = 0.9
 """r = (v/B)^2 beyond which a curve tells nothing."""
+
+PARABOLA_PARAMETERS: Final = 3
+"""Height, slope and bow of the residuals of a tow."""
 
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
@@ -53,8 +56,29 @@ def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     if not pooled:
         return curve.own_scatter(c.free)
     residual, is_used, on_curve = _residuals(c)
+    return _pool(c, residual, is_used, on_curve, CURVE_PARAMETERS)
+
+
+def pure_error_of(c: Computed) -> curve.Scatter:
+    """Return the scatter of single run points that is no shape of the hull, pooled over a season.
+
+    A hull lies off its hyperbola in all of its tows. That is the misfit of the budget and no
+    scatter: what a parabola in speed takes out of the residuals of a tow is left out here (pure
+    error: Draper & Smith 1998, ch. 2).
+    """
+    residual, is_used, on_curve = _residuals(c)
+    x = c.points.speed_m_s / c.tows.of_tow("declared_speed_m_s")[:, None] - 1.0
+    design = np.where(is_used[..., None], np.stack([np.ones_like(x), x, x**2], axis=2), 0.0)
+    parabola = (design @ (np.linalg.pinv(design) @ residual[..., None]))[..., 0]
+    return _pool(c, residual - parabola, is_used, on_curve, PARABOLA_PARAMETERS)
+
+
+def _pool(
+    c: Computed, residual: FloatArray, is_used: BoolArray, on_curve: FloatArray, parameters: int
+) -> curve.Scatter:
+    """Return the scatter of residuals pooled over seasons, as a variance of Cw of each tow."""
     is_trusted = is_used & c.tows.trusted[:, None]
-    sd_ratio, dof = pool_scatter(residual, is_trusted, c.season_group)
+    sd_ratio, dof = pool_scatter(residual, is_trusted, c.season_group, parameters)
     is_known = np.isfinite(sd_ratio) & is_used.any(axis=1)
     mean_cw = np.where(is_used, on_curve, 0.0).sum(axis=1) / np.maximum(is_used.sum(axis=1), 1)
     variance = (np.where(is_known, sd_ratio, 0.0) * mean_cw) ** 2
@@ -108,7 +132,7 @@ def make_facts(
         `cw_kg_m`, NaN from B on; `misfit`, hull over curve less 1 by all tows of the boat, and
         `misfit_variance`, 0 where no season factors are estimated.
     """
-    scatter = scatter_of(c, pooled=factors is not None)
+    scatter = scatter_of(c, pooled=False) if factors is None else pure_error_of(c)
     tows = _facts_at_any_speed(c, factors, scatter)
     misfit, misfit_variance = _boat_misfit(c, np.array(speed_ratios))
     if factors is None:
@@ -178,14 +202,10 @@ def _facts_at_any_speed(
         tow_log_sd = np.where(c.speed.is_calibrated, 0.0, log_sd)
     bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual_bend)
 
-    # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
-    # taken off, and only what is put back for still air has it.
-    by_archive = c.plan.run_options.wind.coefficients == "archive"
-    net_air = np.where(by_archive, 0.0, c.air_kg_m) - c.still_air_kg_m
+    net_air = c.air_kg_m - c.still_air_kg_m
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_per_unit = c.still_air_kg_m / np.maximum(c.air.drag.still, 1e-9)
     felt_per_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
-    coefficient_sd = np.where(np.isfinite(c.air.drag_sd), c.air.drag_sd, Assumed().wind_coefficient)
     return tows.frame.select(
         "tow_id",
         "season",
@@ -196,14 +216,12 @@ def _facts_at_any_speed(
         calibrated=pl.Series(c.speed.is_calibrated),
         askew_ratio=pl.Series(c.estimated("askew_ratio")).fill_nan(None),
         log_sd=pl.Series(np.where(has_log, c.estimated("ln_sd"), 0.0)),
-        log_dof=pl.Series(np.where(has_log, c.estimated("dof"), np.inf)),
         tow_log_sd=pl.Series(tow_log_sd),
         net_air_kg_m=pl.Series(tows.mean(net_air, c.used)),
         air_per_coefficient_kg_m=pl.Series(tows.mean(still_per_unit - felt_per_unit, c.used)),
         still_air_kg_m=pl.Series(tows.mean(c.still_air_kg_m, c.used)),
         wind_ln_sd=pl.Series(c.air.anemometer_ln_sd).fill_nan(None),
         wind_measured=pl.Series(tows.measured("wind")),
-        wind_coefficient=pl.Series(coefficient_sd),
         unmeasured_wind=pl.Series(c.air.unrecorded_sd),
         temperature_known=pl.Series(c.temperature.is_known),
         water_off_c=pl.Series(c.water_off_c),

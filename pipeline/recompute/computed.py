@@ -63,7 +63,6 @@ class AirCorrection:
 
     Attributes:
         drag: coefficients of each run.
-        drag_sd: standard deviation of the archive's coefficient, shape (tows,).
         anemometer_ln_scale, anemometer_ln_sd: ln of the anemometer's scale, which is taken out of
             the means, shape (tows,).
         unrecorded_ratio, unrecorded_sd: net wind correction / its still-air part, mean of out and
@@ -71,7 +70,6 @@ class AirCorrection:
     """
 
     drag: Drag
-    drag_sd: FloatArray
     anemometer_ln_scale: FloatArray
     anemometer_ln_sd: FloatArray
     unrecorded_ratio: FloatArray

@@ -65,7 +65,7 @@ class WindOptions(_Group):
 
     Attributes:
         is_oblique: the oblique wind model, else head wind.
-        coefficients: `fixed`, `per_run` or `archive`.
+        coefficients: `fixed` or `per_run`.
         ahead, behind, side: drag coefficients.
         averaging_s: seconds over which the wind vector is averaged.
         estimates_anemometer: the scale of the anemometer is estimated, else taken as it reads.

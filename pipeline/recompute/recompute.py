@@ -46,9 +46,6 @@ from pipeline.uncertainty.propagation import Assumed
 PER_RUN_ITERATIONS: Final = 4
 """The old tool printed "4 iteraties" (presentation 2015, screens of Razende Snol)."""
 
-ARCHIVE_GRID: Final = np.linspace(0.0, 1.2, 13)
-"""Drag coefficients at which the misfit of the whole archive is computed."""
-
 MIN_MEASURED_WINDS: Final = 10
 """Tows with an anemometer from which those without learn (inferred)."""
 
@@ -114,7 +111,6 @@ def evaluate(plan: Plan, instruments: pl.DataFrame | None = None) -> Computed:
     )
     computed = correct_anemometers(computed)
     computed = search_drag_per_run(computed)
-    computed = apply_archive_drag(computed)
     return expect_unrecorded_wind(computed)
 
 
@@ -212,12 +208,10 @@ def correct_temperature(plan: Plan, speed_m_s: FloatArray) -> TemperatureCorrect
 def prescribe_air(plan: Plan) -> AirCorrection:
     """Return the air correction with the coefficients that the method prescribes."""
     wind = plan.run_options.wind
-    not_estimated = np.full(plan.tows.size, np.nan)
     return AirCorrection(
         drag=Drag(ahead=wind.ahead, behind=wind.behind, still=wind.ahead),
-        drag_sd=not_estimated,
         anemometer_ln_scale=np.zeros(plan.tows.size),
-        anemometer_ln_sd=not_estimated,
+        anemometer_ln_sd=np.full(plan.tows.size, np.nan),
         unrecorded_ratio=np.zeros(plan.tows.size),
         unrecorded_sd=np.full(plan.tows.size, Assumed().unmeasured_wind),
     )
@@ -257,75 +251,6 @@ def search_drag_per_run(computed: Computed) -> Computed:
         still=prescribed.still,
     )
     return replace(computed, air=replace(computed.air, drag=chosen))
-
-
-def apply_archive_drag(computed: Computed) -> Computed:
-    """Use one coefficient for the whole archive, where the method asks and tows determine it."""
-    uses_archive = computed.options.wind.coefficients == "archive"
-    estimate = estimate_archive_drag(computed, uses_archive) if uses_archive.any() else None
-    if estimate is None:  # not asked for, or no tow with every curve
-        return computed
-    value, sd = estimate
-    by_run = uses_archive[computed.tows.tow]
-    drag = Drag(
-        ahead=np.where(by_run, value, computed.air.drag.ahead),
-        behind=np.where(by_run, value, computed.air.drag.behind),
-        still=np.where(by_run, value, computed.air.drag.still),
-    )
-    drag_sd = np.where(uses_archive, sd, np.nan)
-    return replace(computed, air=replace(computed.air, drag=drag, drag_sd=drag_sd))
-
-
-def estimate_archive_drag(
-    computed: Computed, uses_archive: BoolArray
-) -> tuple[float, float] | None:
-    """Estimate the coefficient with the least misfit of all tows together.
-
-    Out and back feel different wind, so a wrong coefficient drives their points apart. Tows that
-    one of the coefficients leaves without a curve take no part, so that every sum is of the same
-    tows. Near its minimum the misfit is a parabola in the coefficient. The standard deviation is
-    the sandwich over tows (Huber 1967): what is odd about one tow is shared by its runs.
-
-    Returns:
-        The coefficient and its standard deviation; None without tows.
-    """
-    misfit = compute_misfits(computed, ARCHIVE_GRID)[:, uses_archive & computed.tows.trusted]
-    misfit = misfit[:, np.isfinite(misfit).all(axis=0)]
-    if not misfit.size:
-        return None
-    best = int(np.clip(misfit.sum(axis=1).argmin(), 1, len(ARCHIVE_GRID) - 2))
-    below, here, above = misfit[best - 1 : best + 2]
-    curvature = below - 2.0 * here + above
-    if curvature.sum() <= 0:
-        return float(ARCHIVE_GRID[best]), Assumed().wind_coefficient
-    step = ARCHIVE_GRID[1] - ARCHIVE_GRID[0]
-    shift = 0.5 * (below - above).sum() / curvature.sum()
-    slopes = 0.5 * (above - below) + curvature * shift
-    value = np.clip(ARCHIVE_GRID[best] + step * shift, ARCHIVE_GRID[0], ARCHIVE_GRID[-1])
-    return float(value), float(step * np.sqrt((slopes**2).sum()) / curvature.sum())
-
-
-def compute_misfits(computed: Computed, coefficients: FloatArray) -> FloatArray:
-    """Return residual squares / Cw^2 of each tow for drag coefficients, (coefficients, tows).
-
-    Infinite without a curve through all points. All curves are fitted in one batch.
-    """
-    batches = []
-    for value in coefficients:
-        drag = np.full(len(computed.tows.tow), value)
-        batches.append(computed.points_with(computed.cw_with(Drag(drag, drag, drag))))
-    points = curve.Points(
-        speed_m_s=np.concatenate([batch.speed_m_s for batch in batches]),
-        cw_kg_m=np.concatenate([batch.cw_kg_m for batch in batches]),
-        used=np.concatenate([batch.used for batch in batches]),
-    )
-    curves = curve.fit(points)
-    declared = np.tile(computed.tows.of_tow("declared_speed_m_s"), len(coefficients))
-    runs = np.tile(computed.tows.count(computed.in_fit), len(coefficients))
-    cw = curves.cw_at(declared)
-    is_sound = curves.converged & np.isfinite(cw) & (curves.n_points == runs)
-    misfit = np.where(is_sound, curves.rss_kg2_m2 / np.where(is_sound, cw, 1.0) ** 2, np.inf)
-    return misfit.reshape(len(coefficients), -1)
 
 
 def expect_unrecorded_wind(computed: Computed) -> Computed:

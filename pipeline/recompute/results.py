@@ -38,14 +38,12 @@ from pipeline.tables.season_log import (
     BestEstimateWeights,
     LogFactors,
     SeasonLinks,
-    SeasonSteps,
     TowInstruments,
 )
 from pipeline.uncertainty.propagation import combine, make_budget
 
 OF_ALL_TOWS: Final = {
     "season_links": SeasonLinks,
-    "season_steps": SeasonSteps,
     "tow_instruments": TowInstruments,
     "best_estimate_weights": BestEstimateWeights,
 }
@@ -67,7 +65,6 @@ class Recomputed:
     uncertainty_budget: pl.DataFrame
     curve_points: pl.DataFrame
     season_links: pl.DataFrame
-    season_steps: pl.DataFrame
     season_diagnosis: pl.DataFrame
     tow_instruments: pl.DataFrame
     best_estimate_weights: pl.DataFrame
@@ -262,7 +259,6 @@ def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
     of_links = schemas["season_links"]
     return {
         "season_links": estimated.factors.select(*of_links).cast(pl.Schema(of_links)),
-        "season_steps": estimated.steps,
         "tow_instruments": estimated.tows.select(*schemas["tow_instruments"]).sort("tow_id"),
         "best_estimate_weights": estimated.weights,
     }

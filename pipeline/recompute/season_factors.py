@@ -15,7 +15,7 @@ import polars as pl
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.channels import BACK, OUT
-from pipeline.recompute.budget import FORCE_SD, files_log_sd, scatter_of
+from pipeline.recompute.budget import FORCE_SD, files_log_sd, pure_error_of
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
 from pipeline.season_log import SeasonFactors, estimate_season_factors, first_estimate
@@ -76,7 +76,7 @@ def instruments_of(plan: Plan, rows: pl.DataFrame | None) -> pl.DataFrame:
     known = pl.DataFrame(schema=INSTRUMENTS) if rows is None else rows
     joined = own.join(known.select(*INSTRUMENTS), on="tow_id", how="left", maintain_order="left")
     # A tow that takes no part in the estimate had the instruments of its season all the same.
-    of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
+    of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd")
     filled = joined.with_columns(of_season.fill_null(of_season.mean().over("season", "log1_part")))
     asked = pl.Series(plan.options.speed.correction == "estimated")
     return filled.with_columns(
@@ -102,7 +102,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
 
     points = _water_points(c)
     curves = curve.fit(points)
-    errors = curve.covariance(points, curves, scatter_of(c, pooled=True), log_speed)
+    errors = curve.covariance(points, curves, pure_error_of(c), log_speed)
     cw_as_read = curves.cw_at(log_speed)
     is_sound = curves.converged & np.isfinite(cw_as_read) & (cw_as_read > 0)
     cw = np.where(is_sound, cw_as_read, 1.0)

@@ -8,10 +8,12 @@ from typing import Final
 
 import numpy as np
 import polars as pl
+import scipy
 
-from pipeline.arrays import FloatArray, IntArray
+from pipeline.arrays import IntArray
+from pipeline.quantiles import LEVEL as INTERVAL_LEVEL
 from pipeline.quantiles import NORMAL
-from pipeline.season_log.archive import LOG, Archive
+from pipeline.season_log.archive import Archive
 from pipeline.season_log.factors import ESTIMATED, NOT_DETERMINED, NOT_SETTLED
 from pipeline.season_log.faults import Posterior
 from pipeline.season_log.fit import Fit
@@ -22,8 +24,9 @@ from pipeline.season_log.observation_model import (
     ZERO,
     ZERO_DRIFT,
 )
+from pipeline.season_log.season_levels import SeasonLevel, compare_season_levels
 from pipeline.tables.frames import dtypes
-from pipeline.tables.season_log import SeasonDiagnosis, SeasonSteps
+from pipeline.tables.season_log import SeasonDiagnosis
 
 FAULT_PROBABILITY: Final = 0.5
 """Probability from which a fault is in the model."""
@@ -35,18 +38,23 @@ MIN_INFORMED_SHARE: Final = 0.05
 """Least share of a prior's variance that counts as learned from the archive. Where the archive says
 nearly nothing of an effect, prior and posterior variance are equal but for rounding and for the
 approximation of the posterior, and a quotient by their difference is no distance (inferred)."""
-MAX_USUAL_SD: Final = 2.0
-"""Faults beyond so many standard deviations of their prior are not usual."""
 FAULT: Final = "fault"
 ALARM: Final = "alarm"
 SOUND: Final = "sound"
 CANNOT_BE_TOLD: Final = "cannot be told"
 WOULD_NOT_SHOW: Final = "would not show"
-LOAD_CELL: Final = (FORCE, ZERO, ZERO_DRIFT)
 ALTERED_BOAT: Final = "altered_boat"
 """What a fault that one boat alone shows may be instead."""
+SEASON_LEVEL: Final = "season_level"
+"""What all tows of a season have in common (`season_levels`), among the instruments."""
+LEVEL_CAUSES: Final = ("mass_on_board", "water_depth", "waves", "force_not_linear")
+"""What a level of a season may be that is no fault of the model."""
+MAX_LEVEL: Final = np.log(1.02)
+"""Level in ln Cw from which a person should look: two tows agree within 2 % (P2015)."""
+MAX_LEVEL_HALF_WIDTH: Final = 2.0 * MAX_LEVEL
+"""Half width of the interval of a level beyond which it would not show. It is passed where nothing
+but the bend tells the level from the log."""
 
-STEP_SCHEMA: Final = dtypes(SeasonSteps, without=["method"])
 DIAGNOSIS_SCHEMA: Final = dtypes(SeasonDiagnosis, without=["method"])
 
 
@@ -71,11 +79,46 @@ def diagnose_seasons(posterior: Posterior) -> pl.DataFrame:
             instruments.setdefault((effect.season, effect.part, effect.name), []).append(place)
     evidence = _describe_evidence(posterior.fit.model.archive)
     rows = [
-        {"season": season, "part": part, "instrument": name, "rests_on": evidence[season][1]}
+        {"season": season, "part": part, "instrument": name, "rests_on": evidence[season]}
         | _diagnose_instrument(posterior, name, np.array(instruments[season, part, name]))
         for season, part, name in sorted(instruments)
     ]
-    return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA)
+    levels = compare_season_levels(posterior.fit)
+    rows += [
+        {"season": season, "part": 0, "rests_on": evidence[season]}
+        | _diagnose_level(level, len(levels), posterior.fit.has_converged)
+        for season, level in levels.items()
+    ]
+    return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA).sort("season", "part", "instrument")
+
+
+def _diagnose_level(level: SeasonLevel, n_seasons: int, has_converged: bool) -> dict[str, object]:
+    """Return the diagnosis of what all tows of a season have in common.
+
+    It is an alarm where it is 2 % or more and its interval excludes none. The interval holds for
+    all seasons together with 95 % (Bonferroni): of ten seasons one would else be an alarm by chance
+    in every other archive with plain GPS.
+    """
+    error_rate = (1.0 - INTERVAL_LEVEL) / n_seasons
+    half_width = float(scipy.special.ndtri(1.0 - 0.5 * error_rate)) * level.sd
+    is_alarm = abs(level.ln_ratio) >= max(MAX_LEVEL, half_width)
+    if not has_converged:
+        verdict = NOT_SETTLED
+    elif half_width > MAX_LEVEL_HALF_WIDTH:
+        verdict = WOULD_NOT_SHOW
+    else:
+        verdict = ALARM if is_alarm else SOUND
+    return {
+        "instrument": SEASON_LEVEL,
+        "unit": "1",
+        "estimate": level.ln_ratio,
+        "lo": level.ln_ratio - half_width,
+        "hi": level.ln_ratio + half_width,
+        "distance_sd": level.ln_ratio / level.sd,
+        "verdict": verdict,
+        "alarm": verdict in (ALARM, NOT_SETTLED),
+        "confused_with": ", ".join(LEVEL_CAUSES) if verdict == ALARM else None,
+    }
 
 
 def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> dict[str, object]:
@@ -115,6 +158,9 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
         would_show = bool(posterior.would_show[candidates].any())
         verdict = _judge_fault(probability, distance, would_show)
     has_too_few_boats = unresolved is not None or not posterior.has_boats[candidates].all()
+    confusions = _list_confusions(posterior, columns, candidates, has_too_few_boats)
+    if name == FORCE and verdict == FAULT:
+        confusions += [cause for cause in LEVEL_CAUSES if cause not in confusions]
     return {
         "unit": "N" if name in (ZERO, ZERO_DRIFT) else "1",
         "estimate": estimate,
@@ -126,7 +172,7 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
         "alarm": verdict in (FAULT, ALARM, NOT_SETTLED) or unresolved is not None,
         "first_tow": first_tow,
         "shown_by": None if unresolved is None else ", ".join(unresolved.boats),
-        "confused_with": _list_confusions(posterior, columns, candidates, has_too_few_boats),
+        "confused_with": ", ".join(confusions) or None,
     }
 
 
@@ -177,7 +223,7 @@ def _judge_log(posterior: Posterior, column: int) -> str:
 
 def _list_confusions(
     posterior: Posterior, columns: IntArray, candidates: IntArray, has_too_few_boats: bool
-) -> str | None:
+) -> list[str]:
     """Return what these faults pass for while they do not show, and what would pass for them.
 
     Args:
@@ -194,11 +240,11 @@ def _list_confusions(
         labels.append(ALTERED_BOAT)
         others = [effect for effect in others if effect.name not in BOAT_EFFECTS]
     labels += [label for label in dict.fromkeys(e.label for e in others) if label not in own]
-    return ", ".join(labels) or None
+    return labels
 
 
-def _describe_evidence(archive: Archive) -> dict[int, tuple[int, str]]:
-    """Return for each season how many boats link it to others, and what it rests on, in words."""
+def _describe_evidence(archive: Archive) -> dict[int, str]:
+    """Return what each season rests on, in words."""
     frame = archive.frame.with_columns(boat=archive.boat)
     described = {}
     observed = frame.filter(archive.is_observed)
@@ -211,53 +257,5 @@ def _describe_evidence(archive: Archive) -> dict[int, tuple[int, str]]:
             words.append("plain GPS")
         if tows["anchored"].any():
             words.append("dGPS")
-        described[season] = (boats, ", ".join(words))
+        described[season] = ", ".join(words)
     return described
-
-
-def attribute_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
-    """Return whether the step of a season against the others is the log's or the load cell's.
-
-    Returns:
-        Rows of `STEP_SCHEMA`: `level_step`, what log and load cell together do to ln Cw, and
-        `force_step`, the part of the load cell, with standard deviations. `cause` is
-
-        - `force` where a fault of the load cell is likelier than not;
-        - `not told` where one cannot be told; where the season is not determined, or the search did
-          not converge; and where a fault of the load cell would not show, and one no larger than
-          usual could be the whole step;
-        - `log` where the level differs by more than twice its standard deviation;
-        - else `none`.
-    """
-    fit, archive = posterior.fit, posterior.fit.model.archive
-    verdict = {tuple(row[:3]): row[3] for row in diagnosis[[*LOG, "instrument", "verdict"]].rows()}
-    evidence = _describe_evidence(archive)
-    usual_size = MAX_USUAL_SD * fit.model.priors.force_fault_sd
-    is_load_cell = np.isin(fit.name, LOAD_CELL)
-    rows = []
-    for (season, part), tows in archive.frame.with_row_index().group_by(LOG, maintain_order=True):
-        mean_design = fit.instrument_design[tows["index"]].mean(axis=0)
-        step, step_sd = _estimate(posterior, mean_design)
-        force, force_sd = _estimate(posterior, np.where(is_load_cell, mean_design, 0.0))
-        load_cell_verdicts = {verdict.get((season, 0, name)) for name in LOAD_CELL}
-        log_verdict = verdict.get((season, part, LOG_SCALE))
-        is_step = abs(step) > 2.0 * step_sd
-        could_be_force = (
-            verdict.get((season, 0, FORCE)) == WOULD_NOT_SHOW and abs(step) < usual_size
-        )
-        is_unknown = not fit.has_converged or log_verdict in (NOT_DETERMINED, NOT_SETTLED)
-        if load_cell_verdicts & {FAULT, ALARM}:
-            cause = "force"
-        elif is_unknown or CANNOT_BE_TOLD in load_cell_verdicts or (is_step and could_be_force):
-            cause = "not told"
-        else:
-            cause = "log" if is_step else "none"
-        boats = evidence[season][0]
-        rows.append((season, part, boats, step, step_sd, force, force_sd, cause))
-    return pl.DataFrame(rows, schema=STEP_SCHEMA, orient="row").sort(LOG)
-
-
-def _estimate(posterior: Posterior, combination: FloatArray) -> tuple[float, float]:
-    """Return a combination of effects, (k,), and its standard deviation."""
-    variance = max(float(combination @ posterior.fit.covariance @ combination), 0.0)
-    return float(combination @ posterior.fit.value), float(np.sqrt(variance))

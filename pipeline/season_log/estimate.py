@@ -6,9 +6,9 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
-from pipeline.quantiles import t_quantile
+from pipeline.quantiles import NORMAL
 from pipeline.season_log.archive import build_archive
-from pipeline.season_log.diagnosis import attribute_steps, diagnose_seasons
+from pipeline.season_log.diagnosis import diagnose_seasons
 from pipeline.season_log.factors import BY_GPS, NOT_SETTLED, make_factor_table
 from pipeline.season_log.faults import Posterior, find_posterior, find_rough_posterior
 from pipeline.season_log.fit import build_model
@@ -32,7 +32,7 @@ class SeasonFactors:
         ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
         drift_sd: standard deviation of what a boat drifts from that in a year.
         tows, weights: what was estimated of each tow (`tow_estimates.estimate_tows`).
-        diagnosis, steps: what is wrong in each season (`diagnosis`).
+        diagnosis: what is wrong in each season (`diagnosis`).
     """
 
     factors: pl.DataFrame
@@ -47,7 +47,6 @@ class SeasonFactors:
     tows: pl.DataFrame
     weights: pl.DataFrame
     diagnosis: pl.DataFrame
-    steps: pl.DataFrame
 
     def tow_log_sd_of(self, season: FloatArray) -> FloatArray:
         """Return the standard deviation of ln factor from tow to tow in given seasons."""
@@ -70,7 +69,7 @@ class SeasonFactors:
         weight = tows / tows.sum()
         ln_factor = weight @ determined["factor"].log().to_numpy()
         sd = np.sqrt(weight @ self.covariance @ weight)
-        half_width = sd * t_quantile(parts["dof"].to_numpy().min())
+        half_width = NORMAL * sd
         factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half_width, half_width])).tolist()
         other_sources = [source for source in parts["source"] if source != BY_GPS]
         return factor, lo, hi, other_sources[0] if other_sources else BY_GPS
@@ -127,7 +126,6 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
     fit = posterior.fit
     factors, covariance = make_factor_table(fit, posterior.is_determined, posterior.is_refused)
     of_tows, weights = estimate_tows(posterior)
-    diagnosis = diagnose_seasons(posterior)
     sd = np.exp(0.5 * fit.ln_variance).tolist()
     eras = len(PRIORS.era_starts)
     ageing = int(np.flatnonzero(fit.name == AGEING)[0])
@@ -143,6 +141,5 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
         drift_sd=sd[-1],
         tows=of_tows,
         weights=weights,
-        diagnosis=diagnosis,
-        steps=attribute_steps(posterior, diagnosis),
+        diagnosis=diagnose_seasons(posterior),
     )

@@ -4,14 +4,13 @@ A guard that needs no model: no log was off by more than 10 %, and boats that we
 out alike beside dGPS, whatever the joint estimate believes.
 """
 
-import math
 from typing import Final
 
 import numpy as np
 import polars as pl
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.quantiles import MAD_TO_SD, t_quantile
+from pipeline.quantiles import NORMAL
 from pipeline.season_log.archive import ANCHORED, GPS, LEVEL
 from pipeline.season_log.fit import Fit
 from pipeline.season_log.observation_model import GPS_SCALE
@@ -23,12 +22,11 @@ NOT_SETTLED: Final = "not settled"
 
 MAX_LOG_ERROR: Final = 0.10
 """Largest distance of a factor from 1 that is believed: the worst log was 6 % off."""
-MAX_CONTRADICTION_SD: Final = 4.0
-"""Largest distance, in standard deviations, from what the season's repeat tows say alone."""
+MAX_CONTRADICTION: Final = 0.03
+"""Largest distance in ln factor from what the season's repeat tows say alone: half of the worst
+log's error (inferred)."""
 MIN_BOATS: Final = 5
-"""Fewer boats have no robust spread (inferred)."""
-MEDIAN_SD: Final = math.sqrt(math.pi / 2.0)
-"""Standard deviation of a median of n normal numbers, times sqrt(n), in theirs."""
+"""Fewer boats have no median to rely on (inferred)."""
 
 
 def make_factor_table(
@@ -61,14 +59,12 @@ def make_factor_table(
     assumed_variance = from_prior[:, ~is_gps_scale].sum(axis=1)
     repeat_variance = np.maximum(variance - gps_variance - assumed_variance, 0.0)
 
-    dof = fit.degrees_of_freedom(mean_design)
-    half_width = np.sqrt(variance) * t_quantile(np.maximum(dof, 1.0))
+    half_width = NORMAL * np.sqrt(variance)
     numbers = {
         "factor": np.exp(ln_factor),
         "lo": np.exp(ln_factor - half_width),
         "hi": np.exp(ln_factor + half_width),
         "ln_sd": np.sqrt(variance),
-        "dof": dof,
         "repeat_tows_sd": np.sqrt(repeat_variance),
         "gps_sd": np.sqrt(gps_variance),
         "assumed_sd": np.sqrt(assumed_variance),
@@ -110,21 +106,17 @@ def _variance_from_gps(fit: Fit, weight: FloatArray) -> FloatArray:
 
 def find_refused(fit: Fit) -> BoolArray:
     """Return whether the factor of a log contradicts what needs no model, (logs,)."""
-    mean_design = fit.mean_log_design
-    ln_factor = mean_design @ fit.value
-    variance = ((mean_design @ fit.covariance) * mean_design).sum(axis=1)
-    gap, gap_variance = _compare_repeat_tows(fit)
-    is_far = np.abs(np.expm1(ln_factor)) > MAX_LOG_ERROR
-    is_contradicted = np.abs(gap) > MAX_CONTRADICTION_SD * np.sqrt(gap_variance + variance)
+    is_far = np.abs(np.expm1(fit.mean_log_design @ fit.value)) > MAX_LOG_ERROR
+    is_contradicted = np.abs(_compare_repeat_tows(fit)) > MAX_CONTRADICTION
     return np.asarray((is_far | is_contradicted) & fit.model.archive.is_connected)
 
 
-def _compare_repeat_tows(fit: Fit) -> tuple[FloatArray, FloatArray]:
-    """Return what repeat tows alone would add to each ln factor, and its variance; 0 where few.
+def _compare_repeat_tows(fit: Fit) -> FloatArray:
+    """Return what repeat tows alone would add to the ln factor of each log, (logs,).
 
-    The difference in ln Cw of every boat that was also towed beside dGPS, less what all boats
-    changed meanwhile, as a ln factor of the log; of these the median. A fault of the load cell is
-    not taken off: it is what a wrong factor hides behind.
+    The median over the boats that were also towed beside dGPS of their difference in ln Cw, less
+    what all boats changed meanwhile, as a ln factor; 0 where these are fewer than `MIN_BOATS`. A
+    fault of the load cell is not taken off: it is what a wrong factor hides behind.
     """
     archive = fit.model.archive
     level = archive.column("ln_cw") - fit.linear.predicted[:, LEVEL] - fit.boat_design @ fit.value
@@ -138,21 +130,16 @@ def _compare_repeat_tows(fit: Fit) -> tuple[FloatArray, FloatArray]:
     )
     boats = tows.group_by("boat", "log", maintain_order=True).mean()
     anchored = boats.filter(log=ANCHORED).select("boat", anchored_level="level")
-    gap = pl.col("gap")
     gaps = (
         boats.filter(pl.col("log") != ANCHORED)
         .join(anchored, on="boat", maintain_order="left")
-        .with_columns(gap=(pl.col("level") - pl.col("anchored_level")) / pl.col("kappa"))
         .group_by("log", maintain_order=True)
         .agg(
             boats=pl.len(),
-            median=gap.median(),
-            sd=MEDIAN_SD * MAD_TO_SD * (gap - gap.median()).abs().median(),
+            median=((pl.col("level") - pl.col("anchored_level")) / pl.col("kappa")).median(),
         )
         .filter(pl.col("boats") >= MIN_BOATS)
     )
-    median = np.zeros(archive.logs.height)
-    variance = np.zeros(archive.logs.height)
-    median[gaps["log"]] = gaps["median"]
-    variance[gaps["log"]] = gaps["sd"] ** 2 / gaps["boats"]
-    return median, variance
+    added = np.zeros(archive.logs.height)
+    added[gaps["log"]] = gaps["median"]
+    return added

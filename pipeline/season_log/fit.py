@@ -98,7 +98,6 @@ class Fit:
         value: (k,) posterior mode of the effects.
         covariance: (k, k) of their posterior.
         ln_variance: (v,), in the order of `variance_names`.
-        ln_variance_covariance: (v, v).
         share: (2,) of gaps with an unreported alteration, and of early tows pulled askew.
         linear: the forward model at the estimate.
         boats: posterior of each group of boats.
@@ -110,7 +109,6 @@ class Fit:
     value: FloatArray
     covariance: FloatArray
     ln_variance: FloatArray
-    ln_variance_covariance: FloatArray
     share: FloatArray
     linear: Linearization
     boats: list[GroupPosterior]
@@ -191,19 +189,6 @@ class Fit:
         of_mean = (self.tow_weight**2).T @ of_tow
         return np.where(archive.logs["calibrated"].to_numpy(), 0.0, of_mean)
 
-    def degrees_of_freedom(self, combination: FloatArray) -> FloatArray:
-        """Return Satterthwaite's degrees of freedom of combinations of effects, (c, k) -> (c,)."""
-        # Derivative of the information on the effects by each ln variance, (v, k, k).
-        derivative = sum(
-            (np.swapaxes(b.precision_design, 1, 2) @ b.parts @ b.precision_design).sum(axis=1)
-            for b in self.boats
-        )
-        along = combination @ self.covariance
-        gradient = ((along @ derivative) * along).sum(axis=2).T  # of the variance, (c, v)
-        estimate = (along * combination).sum(axis=1)
-        spread = ((gradient @ self.ln_variance_covariance) * gradient).sum(axis=1)
-        return np.asarray(2.0 * estimate**2 / np.maximum(spread, 1e-300))
-
 
 def fit_model(
     model: Model,
@@ -235,9 +220,7 @@ def fit_model(
         pattern_share = share if with_patterns and not is_warming_up else None
         linear, boats = _judge_all_patterns(model, active, value, ln_variance, pattern_share)
         value_step, covariance = _step_effects_by_gls(model, active, value, boats)
-        ln_variance_step, ln_variance_covariance = _step_variances_by_reml(
-            model, ln_variance, covariance, boats
-        )
+        ln_variance_step = _step_variances_by_reml(model, ln_variance, covariance, boats)
         logit_step = _step_shares_by_em(model, share, boats)
         fit = Fit(
             model=model,
@@ -245,7 +228,6 @@ def fit_model(
             value=value,
             covariance=covariance,
             ln_variance=ln_variance,
-            ln_variance_covariance=ln_variance_covariance,
             share=share,
             linear=linear,
             boats=boats,
@@ -304,8 +286,8 @@ def _step_effects_by_gls(
 
 def _step_variances_by_reml(
     model: Model, ln_variance: FloatArray, covariance: FloatArray, boats: list[GroupPosterior]
-) -> tuple[FloatArray, FloatArray]:
-    """Return the REML scoring step of the ln variances, (v,), and their covariance, (v, v)."""
+) -> FloatArray:
+    """Return the REML scoring step of the ln variances, (v,)."""
     v = len(ln_variance)
     gradient = np.zeros(v)
     information = np.zeros((v, v))
@@ -322,9 +304,8 @@ def _step_variances_by_reml(
     # A variance that shrinks takes its own gradient with it: that curves the density of its ln.
     information += np.diag(prior_precision + np.maximum(-gradient, 0.0))
     gradient -= prior_precision * (ln_variance - model.prior_ln_variance)
-    ln_variance_covariance: FloatArray = np.linalg.inv(information).astype(np.float64)
-    step = ln_variance_covariance @ gradient
-    return np.clip(step, -MAX_LN_VARIANCE_STEP, MAX_LN_VARIANCE_STEP), ln_variance_covariance
+    step = np.linalg.solve(information, gradient)
+    return np.asarray(np.clip(step, -MAX_LN_VARIANCE_STEP, MAX_LN_VARIANCE_STEP))
 
 
 def _step_shares_by_em(model: Model, share: FloatArray, boats: list[GroupPosterior]) -> FloatArray:

@@ -37,8 +37,8 @@ def estimate_tows(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
           counts where its odds are above 1, and else not at all;
         - `bend`, q of the boat;
         - `askew_ratio`, root mean square of what being pulled askew added to ln Cw: not corrected;
-        - `ln_sd` and `dof` of the instruments' error in ln Cw, per unit of 2 + 2 q, faults that
-          are unresolved among it;
+        - `ln_sd` of the instruments' error in ln Cw, per unit of 2 + 2 q, faults that are
+          unresolved among it;
         - `others_ln_ratio`, change of ln Cw with the instruments as the other boats show them;
         - `measured_ln_cw`, of the tow alone, and `best_ln_cw`, `best_lo`, `best_hi` (95 %).
 
@@ -66,7 +66,6 @@ def estimate_tows(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
         "bend": archive.usual_bend,
         "askew_ratio": _askew_ratio(fit),
         "ln_sd": np.where(has_log, _instrument_sd(posterior), model.priors.log_sd),
-        "dof": fit.degrees_of_freedom(fit.instrument_design),
         "others_ln_ratio": np.where(has_log, -(applied * change).sum(axis=1), np.nan),
         "measured_ln_cw": archive.column("ln_cw") - predicted - ln_force_read,
         "best_ln_cw": best[:, 0],

@@ -31,7 +31,6 @@ B: Final = "curve.b"
 CHOICES: Final[dict[str, tuple[object, object]]] = {
     FACTOR: (1.06, 1 / 0.94),
     "run_point.estimator": ("mean_of_ratios", "ratio_of_robust_means"),
-    "wind.coefficients": ("fixed", "archive"),
     "wind.averaging_s": (0, 3),
     B: ("capped", "free"),
 }

@@ -29,24 +29,9 @@ class SeasonLinks(PerPart):
     lo = column.lower()
     hi = column.upper()
     ln_sd = column.optional("standard deviation of ln factor")
-    dof = column.optional("its degrees of freedom")
     repeat_tows_sd = column.optional("part of ln_sd by scatter of repeat tows")
     gps_sd = column.optional("part of ln_sd by plain GPS")
     assumed_sd = column.optional("part of ln_sd by what is assumed of log, load cell and boats")
-
-
-class SeasonSteps(PerPart):
-    """Whether a season's step against the boats' other tows is the log's or the load cell's."""
-
-    n_boats = column.count("boats also towed in other seasons")
-    level_step = column.optional("step of ln Cw, by the log as it reads")
-    level_step_sd = column.optional("its standard deviation")
-    force_step = column.optional("the part of it in ln force, as the bend shows")
-    force_step_sd = column.optional("its standard deviation")
-    cause = column.text(
-        "log, force (a log error may have come with it), none (no step), or not told",
-        regex="^(log|force|none|not told)$",
-    )
 
 
 class SeasonDiagnosis(PerPart):
@@ -56,8 +41,9 @@ class SeasonDiagnosis(PerPart):
         "log_scale, log_trend (end of the season against its middle), log_change (from a tow on), "
         "gps_scale (plain GPS), force_scale, force_zero, force_zero_drift (end against middle), "
         "anemometer_scale (wind read / wind), season_bend (the bend of all boats as this season's "
-        "logs show it), water_temperature (not recorded), or fleet_step (all boats changed with "
-        "this season)",
+        "logs show it), water_temperature (not recorded), fleet_step (all boats changed with "
+        "this season), or season_level (all tows of the season against the other tows of their "
+        "boats, with instruments corrected for what was found of them)",
         primary_key=True,
     )
     unit = column.text("1 for the logarithm of a factor, N for a force")
@@ -69,8 +55,9 @@ class SeasonDiagnosis(PerPart):
     verdict = column.text(
         "sound, would not show (one of the usual size would not be found), fault (likelier than "
         "not), cannot be told (10 to 50 %, or one boat alone shows it), alarm (4 standard "
-        "deviations apart); of a log's factor estimated or not determined; not settled (the search "
-        "did not come to rest: no estimate of the method can be relied on)",
+        "deviations apart; of a level 2 % and beyond its interval); of a log's factor estimated or "
+        "not determined; not settled (the search did not come to rest: no estimate of the method "
+        "can be relied on)",
         regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined"
         "|not settled)$",
     )
@@ -98,7 +85,6 @@ class TowInstruments(PerTow):
         "of Cw, by being pulled askew: root mean square; 0 where that is unlikely", min=0
     )
     ln_sd = column.number("their standard deviation in ln Cw / the elasticity 2 + 2 q", min=0)
-    dof = column.optional("its degrees of freedom")
 
 
 class BestEstimateWeights(PerTow):

@@ -96,7 +96,7 @@ def list_components(assumed: Assumed) -> dict[str, Component]:
     wind_scale_sd = col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
     wind = (
         pl.when(has_wind)
-        .then(col("air_per_coefficient") * col("wind_coefficient"))
+        .then(col("air_per_coefficient") * assumed.wind_coefficient)
         .otherwise(col("still_air_ratio") * col("unmeasured_wind"))
     )
     temperature_sd_c = (
@@ -125,7 +125,7 @@ def list_components(assumed: Assumed) -> dict[str, Component]:
             pl.when(has_temperature).then(pl.lit("single")).otherwise(season),
         ),
         "straightness": Component(col("askew_ratio").fill_null(assumed.straightness_ratio)),
-        "season_log": Component(col("kappa") * col("log_sd"), season, col("log_dof")),
+        "season_log": Component(col("kappa") * col("log_sd"), season),
     }
 
 
@@ -139,13 +139,13 @@ def make_budget(facts: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
         facts: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part`; `kappa`, elasticity of Cw by a speed error; `random_ratio`, of the
             scatter of the run points, with `random_dof`; `force_n`, tow force; `misfit_ratio`, of
-            the hull about its hyperbola; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
-            season's ln factor (0 and any where calibrated), `tow_log_sd` of the log (0 where
+            the hull about its hyperbola; `calibrated` (on dGPS); `log_sd` of the season's ln
+            factor (0 where calibrated), `tow_log_sd` of the log (0 where
             calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
-            ln Cw per unit of drag coefficient (both signed); `wind_coefficient`, standard deviation
-            of that coefficient; `wind_ln_sd`, of the anemometer's ln scale, null where it is taken
-            as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part /
-            Cw, and `unmeasured_wind`, standard deviation of the net correction over that;
+            ln Cw per unit of drag coefficient (both signed); `wind_ln_sd`, standard deviation of
+            the anemometer's ln scale, null where it is taken as it reads; `wind_measured`, and
+            where it was not `still_air_ratio`, still-air part / Cw, and `unmeasured_wind`, standard
+            deviation of the net correction over that;
             `temperature_known`; `water_off_c`, of the water from its day's; `mass_ln_sd`, of ln
             mass, 0 where it was weighed, and `water_change_ratio`, the correction for temperature /
             Cw, which goes with the root of the mass; `askew_ratio`, by being pulled askew, null
@@ -213,7 +213,10 @@ def combine(budget: pl.DataFrame) -> pl.DataFrame:
 
 
 def pool_scatter(
-    residual_ratio: FloatArray, is_used: BoolArray, group: FloatArray | IntArray
+    residual_ratio: FloatArray,
+    is_used: BoolArray,
+    group: FloatArray | IntArray,
+    parameters: int = CURVE_PARAMETERS,
 ) -> tuple[FloatArray, FloatArray]:
     """Return the relative scatter of run points about their curves, pooled over groups of tows.
 
@@ -223,13 +226,14 @@ def pool_scatter(
         residual_ratio: (tows, points) (point - curve) / curve.
         is_used: (tows, points) whether a point counts.
         group: (tows,) the same for tows whose scatter is pooled.
+        parameters: number of parameters that were fitted to the points of each tow.
 
     Returns:
         Standard deviation and degrees of freedom of each tow's group, (tows,); infinite and 0 where
         no tow of the group has a point to spare.
     """
     _, place = np.unique(group, return_inverse=True)
-    spare_points = np.maximum(is_used.sum(axis=1) - CURVE_PARAMETERS, 0)
+    spare_points = np.maximum(is_used.sum(axis=1) - parameters, 0)
     counts = is_used & (spare_points > 0)[:, None]
     square = np.where(counts, residual_ratio**2, 0.0).sum(axis=1)
     dof = np.bincount(place, spare_points)[place].astype(np.float64)

@@ -51,7 +51,7 @@ def hard(tmp_path_factory):
             toml.write(f'\n[[set_aside]]\ndate = {day}\nreason = "storm"\n')
         toml.write('\n[[log_replaced]]\ndate = 2011-04-01\nlog = "log1"\nreason = "worn"\n')
     bench.rebuild((read_shipped_method(METHOD),))
-    asked = ("log_factors", "season_links", "season_steps", "season_diagnosis")
+    asked = ("log_factors", "season_links", "season_diagnosis")
     tables = {name: bench.store.read(name, METHOD) for name in asked}
     tables |= {"about": pl.DataFrame({"key": ["simulated"], "value": ["true"]})}
     build_database(bench.store.database, tables | {"tows": bench.store.read("tows")})
@@ -84,5 +84,5 @@ def test_the_command_says_what_is_not_known(hard, herijk):
     status, out, err = herijk("seasons", "--data", hard.data)
     assert (status, err) == (0, "")
     for said in ("SIMULATED", r"2009 +1\.0600 +- +- +prescribed", "No sound tow in 2010",
-                 r"2011 +2 +1\.\d{4}", "Step is of"):  # fmt: skip
+                 r"2011 +2 +1\.\d{4}", "Level of each season"):  # fmt: skip
         assert re.search(said, out), said

@@ -24,7 +24,7 @@ SETTINGS = WorldSettings(
 )
 METHOD = read_shipped_method("rebased")
 OFF = 1.15
-ASKED = ("log_factors", "season_links", "season_steps", "season_diagnosis")
+ASKED = ("log_factors", "season_links", "season_diagnosis")
 
 
 def _line(tow):

@@ -1,5 +1,8 @@
 """Intervals over a curve's valid speeds: at the declared speed the curve's own, wider elsewhere."""
 
+from dataclasses import replace
+
+import numpy as np
 import polars as pl
 import pytest
 
@@ -52,3 +55,21 @@ def test_two_files_with_logs_that_differ_widen_the_interval_where_nothing_calibr
     u = [by_log.filter(two == files, old)["u_ratio"].mean() for files in (True, False)]
     assert u[0] > u[1] + 0.01
     assert by_log.filter(~old)["u_ratio"].max() < u[0]
+
+
+def test_a_hull_off_its_hyperbola_does_not_count_as_scatter():
+    """Only 100 % of the declared speed reads 1.5 % more force: a shape, and no noise."""
+    world = measure(WorldSettings((2014, 2015), 8, 10, 4))
+    at_declared = (world.blocks.runs["target_speed_ratio"] == 1.0).to_numpy()[:, None]
+    factor = np.where(at_declared, 1.015, 1.0)
+    humped = dict(world.blocks.sums)
+    for name, power in {"force": 1, "log1_cw": 1, "log1_cw2": 2}.items():
+        humped[name] = humped[name] * factor**power
+    parts = {}
+    for name, sums in {"plain": world.blocks.sums, "humped": humped}.items():
+        blocks = replace(world.blocks, sums=sums)
+        made = recompute(read_shipped_method("rebased"), world.tows, blocks, with_bands=False)
+        budget = made.uncertainty_budget.group_by("component").agg(pl.col("u_ratio").mean())
+        parts[name] = dict(budget.rows())
+    assert parts["humped"]["random"] == pytest.approx(parts["plain"]["random"], rel=0.05)
+    assert parts["humped"]["misfit"] > 2.0 * parts["plain"]["misfit"]

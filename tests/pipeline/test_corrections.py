@@ -242,11 +242,3 @@ def test_seconds_count_alike_where_none_stands_out(clean):
         for name in ("ratio_of_means", "ratio_of_robust_means")
     )
     np.testing.assert_allclose(robust, means, rtol=1e-5)
-
-
-def test_the_air_coefficient_of_the_whole_archive():
-    settings = WorldSettings((2015,), 24, 20, 5, defects=lambda season: Defects(wind_m_s=5.0))
-    wind = '{ model = "oblique", coefficients = "archive", side = 0.2 }'
-    tables, _ = recompute_world(settings, [method(wind=wind)])
-    found = tables.run_points["wind_coefficient_ahead"].unique().to_list()
-    assert found == [pytest.approx(0.5, abs=0.01)]

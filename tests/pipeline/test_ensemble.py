@@ -21,11 +21,9 @@ def made():
 
 @pytest.fixture(scope="module")
 def lines(made):
-    """The newest tow of each boat, with its standard uncertainty and the shared part of it."""
-    square, is_shared = pl.col("u_ratio") ** 2, pl.col("shared") != "single"
-    total = made.uncertainty_budget.group_by("tow_id").agg(
-        u_ratio=square.sum().sqrt(), u_ratio_shared=square.filter(is_shared).sum().sqrt()
-    )
+    """The newest tow of each boat, with its standard uncertainty."""
+    square = pl.col("u_ratio") ** 2
+    total = made.uncertainty_budget.group_by("tow_id").agg(u_ratio=square.sum().sqrt())
     newest = made.curves.drop_nulls("cw_kg_m").sort("tow_id").unique("fsn_no", keep="last")
     return newest.sort("tow_id").join(total, on="tow_id", maintain_order="left")
 
@@ -45,7 +43,10 @@ def test_members_spread_as_the_budget_says(made, lines):
 
 def test_tows_of_one_season_err_together_as_far_as_they_share(made, lines):
     two = lines.filter(season=2010).head(2)
-    expected = two["u_ratio_shared"].product() / two["u_ratio"].product()
+    one, other = (made.uncertainty_budget.filter(tow_id=tow_id) for tow_id in two["tow_id"])
+    shared = one.join(other, on="key")
+    together = (shared["effect_ratio"] * shared["effect_ratio_right"]).sum()
+    expected = together / two["u_ratio"].product()
     assert expected > 0.05
     correlation = np.corrcoef(errors(made, two, MANY))[0, 1]
     assert correlation == pytest.approx(expected, abs=4 / np.sqrt(MANY))

@@ -21,7 +21,7 @@ def tows(**changed):
         "misfit_ratio": 0.0, "wind_ln_sd": None,
         "random_ratio": 0.0061, "random_dof": 96.0, "force_n": 250.0,
         "calibrated": True, "log_sd": 0.0,
-        "log_dof": np.inf, "tow_log_sd": 0.0,
+        "tow_log_sd": 0.0,
         "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
         "water_off_c": 0.0, "mass_ln_sd": 0.0, "water_change_ratio": 0.0,

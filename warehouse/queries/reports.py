@@ -62,6 +62,7 @@ class LogErrorReport:
         factors: rows of `log_factors` with what each rests on.
         parts: the same per part of a season and log.
         diagnosis: faults of the season, with their size, that are not sound.
+        levels: what all tows of each season have in common, against the other tows of their boats.
     """
 
     simulated: bool
@@ -69,6 +70,7 @@ class LogErrorReport:
     factors: list[Row]
     parts: list[Row]
     diagnosis: list[Row]
+    levels: list[Row]
 
 
 def rebuild_report(store: Store) -> RebuildReport:
@@ -103,6 +105,7 @@ def log_error_report(store: Store, method: str | None = None) -> LogErrorReport:
             factors=rows(db, _LOG_FACTORS, chosen),
             parts=rows(db, _LOG_PARTS, chosen),
             diagnosis=rows(db, _DIAGNOSIS, chosen),
+            levels=rows(db, _LEVELS, chosen),
         )
 
 
@@ -113,13 +116,9 @@ WITH own AS (
     SELECT method, season, sum(n_tows) AS n_tows, sum(n_links) AS n_links,
            max(component) AS component
     FROM season_links GROUP BY method, season
-), step AS (
-    SELECT method, season, string_agg(DISTINCT cause, ', ' ORDER BY cause) AS cause
-    FROM season_steps GROUP BY method, season
 )
-SELECT f.season, f.factor, f.lo, f.hi, f.source, l.n_tows, l.n_links, l.component, s.cause
+SELECT f.season, f.factor, f.lo, f.hi, f.source, l.n_tows, l.n_links, l.component
 FROM log_factors AS f LEFT JOIN own AS l USING (method, season)
-LEFT JOIN step AS s USING (method, season)
 WHERE f.method = ? ORDER BY f.season
 """
 
@@ -144,5 +143,13 @@ SELECT season, part, instrument, unit, size, size_lo, size_hi, p_fault, distance
        first_tow, rests_on, shown_by, confused_with
 FROM ({SIZED_FAULTS})
 WHERE method = ? AND verdict NOT IN ('sound', 'estimated')
+  AND (instrument != 'season_level' OR verdict = 'alarm')
 ORDER BY season, part, instrument
+"""  # noqa: S608
+
+_LEVELS = f"""
+SELECT season, verdict, size, size_lo, size_hi, unit, rests_on
+FROM ({SIZED_FAULTS})
+WHERE method = ? AND instrument = 'season_level'
+ORDER BY season
 """  # noqa: S608
