@@ -61,7 +61,7 @@ $(DEVELOP): $(READY) requirements-dev.lock
 	@$(call install,requirements-dev.lock)
 	@touch $(DEVELOP)
 
-$(TEXTS:.po=.mo): $(TEXTS) $(READY)
+$(TEXTS:.po=.mo): $(TEXTS) $(wildcard dashboards/templates/*.j2) $(READY)
 	@$(BIN)/python hatch_build.py
 
 demo: $(READY) $(TEXTS:.po=.mo) $(DEMO)/archief

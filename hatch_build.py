@@ -1,5 +1,6 @@
-"""What building the package adds: the catalogues of Dutch texts, compiled as gettext reads them."""
+"""What building the package adds: compiled catalogues of Dutch texts, and compiled templates."""
 
+import sys
 from os import getpid
 from pathlib import Path
 from typing import Any
@@ -25,13 +26,25 @@ def compile_catalogues(root: Path) -> None:
         beside.replace(target)
 
 
+def compile_templates(root: Path) -> None:
+    """Write a Python module for every template that is newer."""
+    sys.path.insert(0, str(root))
+    try:
+        from dashboards import templates  # noqa: PLC0415 - of this checkout, which needs only Jinja
+    finally:
+        sys.path.remove(str(root))
+    templates.compile_templates()
+
+
 class CustomBuildHook(BuildHookInterface):
     """Compiles before a wheel or an editable install is made."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
         """Called by Hatchling before it gathers files."""
         compile_catalogues(Path(self.root))
+        compile_templates(Path(self.root))
 
 
 if __name__ == "__main__":
     compile_catalogues(Path(__file__).parent)
+    compile_templates(Path(__file__).parent)

@@ -20,7 +20,7 @@ from assets.instance import OF_A_COMMAND
 from assets.report import Done, read_report, record_failure
 from assets.settings import Settings
 from dashboards.guard import LOOPBACK
-from dashboards.statements.rebuild import CHANGED, mail
+from dashboards.reports import CHANGED, write_mail
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say, speaker
 from warehouse.intake.seasons import listing
@@ -106,7 +106,9 @@ def rebuild_succeeded(settings: Settings, data: Path, is_served: bool) -> dg.Sen
         report = read_report(Store(data), Done())
         is_of_run = report.made_at >= _get_start(context)
         if report.outcome == CHANGED and is_of_run and not _is_watched(context):
-            send_mail(settings, *mail(report, report.checks, report.simulated, report.last_run))
+            send_mail(
+                settings, *write_mail(report, report.checks, report.simulated, report.last_run)
+            )
 
     return mail_news
 

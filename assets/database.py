@@ -29,9 +29,9 @@ def warehouse_database(folders: Folders, about_archive: pl.DataFrame) -> pl.Data
 @incremental(code=SHOWING, is_whole=lambda store: (store.root / "site" / "index.html").exists())
 def site(folders: Folders) -> pl.DataFrame:
     """Pages people can look at, swapped in whole; the table lists the pages that failed."""
-    from dashboards.site.render import build_site  # noqa: PLC0415 - Altair takes a second
+    from dashboards.site import build_site  # noqa: PLC0415 - Typst takes a while
 
-    made = build_site(folders.store, map_in_parallel)
+    made = build_site(folders.store, each=map_in_parallel)
     return pl.DataFrame([made], schema_overrides={"failed": pl.List(pl.String)})
 
 

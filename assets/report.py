@@ -15,15 +15,15 @@ from typing import Any, Final
 
 import polars as pl
 
-from dashboards.speech import Speech
-from dashboards.statements.rebuild import (
+from dashboards.reports import (
     CHANGED,
     FAILED,
     UNCHANGED,
     Check,
     LastRun,
-    found,
-    headlines,
+    make_report_pages,
+    write_check,
+    write_headlines,
 )
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE
@@ -98,7 +98,7 @@ def write_report(store: Store, check_results: pl.DataFrame, now: dt.datetime) ->
         code_version=code_version(),
         done=Done(),
         checks=checks,
-        headlines=_headlines_in_english(changes, checks),
+        headlines=write_headlines(changes, checks),
     )
     if not changes.nothing:
         _write(store.root / "report" / f"{now:%Y-%m-%dT%H%M%S}.json", _to_json(report))
@@ -144,9 +144,8 @@ def read_checks(check_results: pl.DataFrame) -> list[Check]:
 
 def failed_checks(checks: Sequence[Check]) -> list[str]:
     """Return a sentence for each check whose failing breaks a promise of a table."""
-    speech = Speech(LANGUAGE.get())
     broken = [check for check in checks if not check.passed and check.severity == ERROR]
-    return [f"{check.check}: {found(check)(speech)}" for check in broken]
+    return [f"{check.check}: {write_check(check, LANGUAGE.get())}" for check in broken]
 
 
 def _end_run(store: Store, now: dt.datetime, outcome: str, reason: str) -> Report:
@@ -164,7 +163,7 @@ def _end_run(store: Store, now: dt.datetime, outcome: str, reason: str) -> Repor
         outcome=outcome,
         reason=reason,
     )
-    report = replace(report, headlines=_headlines_in_english(report, report.checks))
+    report = replace(report, headlines=write_headlines(report, report.checks))
     _publish(store, report, last)
     return report
 
@@ -180,15 +179,8 @@ def _publish(store: Store, report: Report, shown: ChangeReport | None) -> None:
     _write(_latest_path(store), _to_json(report))
     if shown is None or not store.database.exists():
         return
-    from dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
-
-    for name, page in report_pages(store, shown, report.checks, report.last_run).items():
+    for name, page in make_report_pages(store, shown, report.checks, report.last_run).items():
         _write(store.root / "report" / name, page)
-
-
-def _headlines_in_english(changes: ChangeReport, checks: Sequence[Check]) -> list[str]:
-    speech = Speech("en")
-    return [line(speech) for line in headlines(changes, checks)]
 
 
 def _latest_path(store: Store) -> Path:

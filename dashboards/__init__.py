@@ -1,9 +1,8 @@
-"""Who shows: figures and the site of plain files. Reads finished tables, computes nothing new.
+"""Who shows: every document as a page, as text and on paper. Reads finished tables.
 
-- Pages and papers: `site`, `workbench`, `documents`, the page of a rebuild
-  (`report_page`), and the project's own documents as pages (`guides`, `markdown`).
-- Pictures as files: `audit_plots`.
-- Charts: `figures`, drawn without a browser by `drawn`, in the `fonts` of the pages.
-- Sentences: `statements`, and numbers as people write them (`speech`).
-- Underneath: `html`, texts that are `kept`, and the `guard` of every server.
+- A document is a query (`pages`, `methods`, `documents`, `comparing`) and a template of the same
+  name; `document` fills it in one language.
+- It is shown as a page of the site (`site`), as text (`terminal`), on paper (`paper`), on the
+  workbench, and in reports and mail (`reports`); `reading` turns a page into blocks.
+- What templates call things: `columns`, `words`, `language`. Charts: `charts`, drawn on a `plot`.
 """

@@ -30,3 +30,8 @@ def _path(folder: str, name: str) -> str:
     if safe != name:
         safe += "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
     return f"{folder}/{safe}.html"
+
+
+def trace_path(tow_id: str) -> str:
+    """The picture of the traces of a tow."""
+    return _path("traces", tow_id).removesuffix(".html") + ".svg"

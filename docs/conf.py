@@ -1,6 +1,5 @@
 """The documents and the reference of the library as pages: `make docs`. No network is needed."""
 
-import json
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import astuple
@@ -10,7 +9,6 @@ from typing import Any, Literal, get_args, get_origin
 from click.testing import CliRunner
 from pydantic.fields import FieldInfo
 
-from herijk.cli.forms import FORMS, schema
 from herijk.cli.main import app
 from pipeline.assessment.checks import CHECK, Check
 from pipeline.method.options import Steps
@@ -62,8 +60,6 @@ def _add_contents(_app: Any, name: str, text: list[str]) -> None:
         text[0] += CONTENTS
     if name == "command-line":
         text[0] += "".join(_helps())
-    if name == "json":
-        text[0] += "".join(_schemas())
     if name == "results":
         text[0] += "".join(_tables())
     if name == "method-details":
@@ -144,13 +140,6 @@ def _helps() -> Iterator[str]:
         for path in ([name], *([name, inner] for inner in getattr(command, "commands", ()))):
             said = CliRunner().invoke(app, [*path, "--help", "--lang", "en"]).output
             yield f"\n## herijk {' '.join(path)}\n\n```text\n{said}\n```\n"
-
-
-def _schemas() -> Iterator[str]:
-    """The JSON Schema of every result."""
-    for call in FORMS:
-        shown = json.dumps(schema(call), indent=1)
-        yield f"\n## herijk {call} --json\n\n```json\n{shown}\n```\n"
 
 
 def setup(app: Any) -> None:

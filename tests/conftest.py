@@ -18,12 +18,12 @@ from filelock import FileLock
 from hypothesis import settings
 
 import assets.rebuild
+import assets.report
 import assets.run
 import assets.workers
-import dashboards.report_page
 from assets.definitions import ASSETS
 from assets.report import Report
-from hatch_build import compile_catalogues
+from hatch_build import compile_catalogues, compile_templates
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.tables.schemas import TABLES
@@ -31,6 +31,7 @@ from warehouse.store.database import open_database
 from warehouse.store.store import Store
 
 compile_catalogues(Path(__file__).parents[1])
+compile_templates(Path(__file__).parents[1])
 
 # The same examples every time, whatever the machine's speed.
 settings.register_profile("repeatable", deadline=None, derandomize=True, max_examples=50)
@@ -81,7 +82,7 @@ def in_one_process() -> AbstractContextManager[object]:
 
 def without_page() -> AbstractContextManager[object]:
     """Inside, the page about a rebuild is not drawn: that takes a second."""
-    return mock.patch.object(dashboards.report_page, "report_pages", return_value={})
+    return mock.patch.object(assets.report, "make_report_pages", return_value={})
 
 
 def records_in_memory() -> AbstractContextManager[object]:

@@ -6,8 +6,8 @@ from string import Formatter
 import click
 import pytest
 from babel.messages.pofile import read_po
-
 from herijk.cli.render import table
+
 from herijk.cli.speaking import language_of
 from pipeline import errors
 from pipeline.messages import LANGUAGE, ngettext, pgettext, say, speaker, spoken

@@ -12,9 +12,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from string import Formatter
 
+import jinja2
 from babel.messages.catalog import Catalog
-from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
+from jinja2 import nodes
 
 from herijk.cli.main import app
 from pipeline import errors
@@ -45,7 +46,8 @@ OF_CLICK = (
     ("{value!r} is not {choice}.", "{value!r} is not one of {choices}."),
 )
 """What the library of the command line says itself, which it looks up in our catalogue."""
-IN_TEMPLATES = {"_": None, "say": None, "both": None, "pgettext": ((1, "c"), 2)}
+IN_TEMPLATES = ("_", "say", "mark")
+"""What marks a text in a template; besides, `pgettext` and `ngettext`."""
 WIDTH = 100
 CODE = re.compile("[a-z]+(_[a-z]+)+")
 
@@ -77,10 +79,25 @@ def written(node: ast.expr) -> Iterator[str]:
         yield from written(node.orelse)
 
 
-def in_template(source: bytes) -> Iterator[Text]:
-    """The marked texts of a template."""
-    found = extract("jinja2", io.BytesIO(source), IN_TEMPLATES)
-    yield from ((message, context) for _, message, _, context in found)
+def in_template(source: str) -> Iterator[Text]:
+    """The marked texts of a template, as Jinja reads it."""
+    for call in jinja2.Environment(autoescape=True).parse(source).find_all(nodes.Call):
+        name = call.node.name if isinstance(call.node, nodes.Name) else ""
+        if name in IN_TEMPLATES:
+            yield from ((text, None) for text in written_in_template(call.args[0]))
+        elif name in ("pgettext", "ngettext"):
+            for first, second in zip(*map(written_in_template, call.args[:2]), strict=True):
+                yield (second, first) if name == "pgettext" else ((first, second), None)
+
+
+def written_in_template(node: nodes.Node) -> Iterator[str]:
+    """The texts that an expression of a template can be, as far as they are written in it."""
+    if isinstance(node, nodes.Const) and isinstance(node.value, str):
+        yield node.value
+    elif isinstance(node, nodes.CondExpr):
+        yield from written_in_template(node.expr1)
+        if node.expr2 is not None:
+            yield from written_in_template(node.expr2)
 
 
 def in_help(command) -> Iterator[Text]:
@@ -106,7 +123,7 @@ def said() -> Iterator[tuple[str, Text]]:
         yield from ((name, text) for text in in_python(file.read_text(encoding="utf-8")))
     for file in sorted((ROOT / "dashboards").rglob("*.j2")):
         name = file.relative_to(ROOT).as_posix()
-        yield from ((name, text) for text in in_template(file.read_bytes()))
+        yield from ((name, text) for text in in_template(file.read_text(encoding="utf-8")))
     yield from (("herijk/cli", text) for text in in_help(app))
     yield from (("herijk/cli", (text, None)) for text in OF_CLICK)
     tables = (TABLES | ABOUT).values()

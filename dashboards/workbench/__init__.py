@@ -1,6 +1,6 @@
 """The workbench: change a method's options and see at once what happens to all boats.
 
 What is asked is in the address, so a link shows the same to others. `form` makes controls of the
-model of a method, `bench` makes of an address a method and its drafts, `results` the page about
-them, `server` listens on loopback. The page is made of the site's parts and started by its script.
+model of a method, `bench` makes of an address a method and what follows from it, `server` listens
+on loopback; the page is a template like all others.
 """

@@ -13,8 +13,9 @@ from urllib.parse import urlencode
 
 from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
 
-from dashboards.figures.style import SCENARIO
-from dashboards.option_labels import text
+from dashboards import words
+from dashboards.queries.pages import sum_up_repeats, with_named_ends
+from dashboards.queries.results import Data
 from dashboards.workbench.form import CONTROLS, Control
 from pipeline.errors import HerijkError
 from pipeline.method.definition import Method, SeasonSteps
@@ -23,12 +24,13 @@ from pipeline.method.reading import list_shipped_methods
 from pipeline.method.variant import Difference, cut_at, differences, variant, write_variant_text
 from warehouse.queries.history import Draft, History
 from warehouse.queries.scenario import Scenario
-from warehouse.queries.views import ALL, NEWEST
 from warehouse.store.editions import edition_names, read_edition, read_edition_method
 from warehouse.store.files import write_new
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
+SCENARIO: Final = "werkbank"
+"""The method that is made here."""
 DEFAULT_BASE: Final = "rebased"
 DRAFTS_KEPT: Final = 8
 
@@ -41,7 +43,6 @@ class Asked:
         base: the method to start from.
         against: the method or edition to compare with: the base, unless said otherwise.
         boat: its number.
-        tows: which tows types are judged by: `ALL`, or the `NEWEST` of each crew.
         at: the first season of the range whose options are shown; "" for all seasons.
         changes: options as they are written in an address, by `step.option`, and of one range of
             seasons alone by `step.option.first`.
@@ -50,14 +51,13 @@ class Asked:
     base: str
     against: str
     boat: str
-    tows: str
     at: str
     changes: Mapping[str, str]
 
     def address(self, **instead: object) -> str:
-        """The address that asks this, with something else in its place; the boat comes last."""
+        """Return the address that asks this, with some values replaced; the boat comes last."""
         asked = vars(self) | instead
-        names = ("base", "against", "tows", "at")
+        names = ("base", "against", "at")
         own = {name: asked[name] for name in names if asked[name]}
         return f"?{urlencode({**own, **asked['changes'], 'boat': asked['boat']})}"
 
@@ -90,64 +90,85 @@ class Bench:
         )
         self._draft = lru_cache(DRAFTS_KEPT)(history.under)
 
-    def asked(self, query: Mapping[str, str]) -> Asked:
-        """What an address asks; what it leaves out or has of a boat that is not there, as usual."""
+    def read_address(self, query: Mapping[str, str]) -> Asked:
+        """Return what an address asks; what it leaves out, and an unknown boat, is as usual."""
         base, boats = query.get("base") or DEFAULT_BASE, self.boats["fsn_no"].to_list()
         boat = query.get("boat", "")
         return Asked(
             base=base,
             against=query.get("against") or base,
             boat=boat if boat in boats else boats[0],
-            tows=NEWEST if query.get("tows") == NEWEST else ALL,
             at=query.get("at", ""),
             changes={name: value for name, value in query.items() if "." in name},
         )
 
-    def ranges(self, asked: Asked) -> tuple[SeasonSteps, ...]:
-        """The steps of the base, cut where a season of the archive begins."""
+    def list_ranges(self, asked: Asked) -> tuple[SeasonSteps, ...]:
+        """Return the steps of the base, cut where a season of the archive begins."""
         return cut_at(self.known.get(asked.base), self.seasons)
 
-    def method(
+    def make_method(
         self, asked: Asked, name: str = SCENARIO, title: str = SCENARIO, reason: str = ""
     ) -> Method:
-        """The method that is asked for.
+        """Return the method that is asked for.
 
         Raises:
             HerijkError: an option cannot have such a value, or there is no such method.
         """
         steps = tuple(
             SeasonSteps(first=r.first, last=r.last, steps=_with_changes(r, asked.changes))
-            for r in self.ranges(asked)
+            for r in self.list_ranges(asked)
         )
         return variant(self.known.get(asked.base), name, title, reason, steps)
 
-    def changed(self, asked: Asked) -> list[Difference]:
-        """The options that are not those of the base."""
-        return differences(self.method(asked), self.known.get(asked.base))
+    def list_changes(self, asked: Asked) -> list[Difference]:
+        """Return the options that are not those of the base."""
+        return differences(self.make_method(asked), self.known.get(asked.base))
 
-    def scenario(self, asked: Asked) -> Scenario:
-        """What follows from the method that is asked for, beside what it is compared with."""
-        return Scenario(self._draft(self._against(asked.against)), self.draft(asked))
+    def compute_results(self, asked: Asked) -> Data:
+        """Return what follows from the method asked for, beside what it is compared with.
 
-    def draft(self, asked: Asked) -> Draft:
-        """What follows from the method that is asked for."""
-        return self._draft(self.method(asked))
+        Raises:
+            HerijkError: the method does not cover a season, or cannot be.
+        """
+        scenario = self.compare_drafts(asked)
+        curves = scenario.boat_curves(asked.boat)
+        spread = with_named_ends(scenario.both(lambda draft: draft.reproducibility))
+        return {
+            "lines": scenario.register_lines,
+            "summary": scenario.summary(),
+            "season_changes": scenario.season_change(),
+            "log_factors": scenario.both(lambda draft: draft.made.log_factors),
+            "consistency": scenario.both(lambda draft: draft.type_consistency),
+            "repeats": spread,
+            **sum_up_repeats(spread, SCENARIO),
+            "curves": curves,
+            "figure": scenario.boat_figure(asked.boat),
+            "tows": curves["tow_id"].unique().sort(descending=True).to_list(),
+        }
 
-    def editions(self) -> list[str]:
-        """Published editions that were made with a method."""
+    def compare_drafts(self, asked: Asked) -> Scenario:
+        """Return the draft that is asked for beside the one that it is compared with."""
+        return Scenario(self._draft(self._get_compared(asked.against)), self.make_draft(asked))
+
+    def make_draft(self, asked: Asked) -> Draft:
+        """Return what follows from the method that is asked for."""
+        return self._draft(self.make_method(asked))
+
+    def list_editions(self) -> list[str]:
+        """Return the published editions that were made with a method."""
         names = edition_names(self.store)
         return [name for name in names if read_edition(self.store, name).method is not None]
 
     def save(self, wanted: Saving) -> Path:
-        """Writes the file of a method into the data folder; never over another.
+        """Write the file of a method into the data folder; never over another.
 
         Raises:
             HerijkError: the name is taken, or the method cannot be.
         """
         if wanted.name in (*list_shipped_methods(), SCENARIO):
             raise HerijkError("{} is the name of another method; choose another", wanted.name)
-        asked = self.asked(wanted.address)
-        method = self.method(asked, wanted.name, wanted.title, wanted.reason)
+        asked = self.read_address(wanted.address)
+        method = self.make_method(asked, wanted.name, wanted.title, wanted.reason)
         path = self.known.folder / f"{wanted.name}.toml"
         try:
             write_new(path, write_variant_text(method))
@@ -155,14 +176,14 @@ class Bench:
             raise HerijkError("{} is there already; choose another name", path) from error
         return path
 
-    def _against(self, name: str) -> Method:
+    def _get_compared(self, name: str) -> Method:
         if name in edition_names(self.store):
             return read_edition_method(self.store, name)
         return self.known.get(name)
 
 
 def _with_changes(block: SeasonSteps, changes: Mapping[str, str]) -> Steps:
-    """The steps of a range of seasons, with what is changed for all seasons and then for these."""
+    """Return the steps of a range of seasons, changed for all seasons and then for these."""
     for_all = [name for name in changes if name.count(".") == 1]
     here = [name for name in changes if name.endswith(f".{block.first}")]
     steps = block.steps
@@ -181,8 +202,8 @@ def _with_changes(block: SeasonSteps, changes: Mapping[str, str]) -> Steps:
 
 
 def _refusal(control: Control, value: str) -> HerijkError:
-    """Why an option cannot have a value."""
-    called = text(f"{control.step}.{control.option}")
+    """Return an error that says why an option cannot have a value."""
+    called = words.name_option(f"{control.step}.{control.option}")
     if control.kind == "number":
         return HerijkError(
             "{} has to lie between {} and {}, and is {}", called, control.least, control.most, value

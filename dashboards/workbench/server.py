@@ -4,13 +4,11 @@ It listens on 127.0.0.1 only. Nothing is fetched from elsewhere, and the page ma
 """
 
 import socket
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from threading import Lock
-from typing import Final
+from typing import Any, Final
 
 import uvicorn
-from markupsafe import Markup
 from pydantic import ValidationError
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
@@ -19,31 +17,24 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
-from dashboards import labels
-from dashboards.guard import guarded
-from dashboards.html import environment
-from dashboards.option_labels import range_in_words, text, value_in_words
-from dashboards.site.charts import page_json
-from dashboards.site.parts import Page
-from dashboards.site.render import Edition, charts_file, shared_files
+from dashboards import fonts
+from dashboards.document import Document
+from dashboards.guard import make_server
+from dashboards.language import Language
+from dashboards.site import STATIC
 from dashboards.workbench.bench import Asked, Bench, Saving
 from dashboards.workbench.form import CONTROLS, Control
-from dashboards.workbench.results import BenchCells, results
 from pipeline.errors import HerijkError
-from pipeline.messages import LANGUAGES, pgettext, spoken
+from pipeline.messages import LANGUAGES, spoken
 from pipeline.method.definition import SeasonSteps
 from pipeline.method.reading import list_shipped_methods
-from pipeline.method.variant import Difference
 from warehouse.queries.views import Views
 
 LOOPBACK: Final = "127.0.0.1"
-HERE: Final = Path(__file__).parent
-SITE: Final = HERE.parent / "site" / "templates"
 ADDRESSES: Final = {"nl": "/", "en": "/en/"}
-
 HEADERS: Final = {
     "Content-Security-Policy": (
-        "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+        "default-src 'none'; script-src 'self'; style-src 'self'; "
         "img-src data:; font-src data:; connect-src 'self'; form-action 'none'; "
         "frame-ancestors 'none'; base-uri 'none'"
     ),
@@ -51,65 +42,61 @@ HEADERS: Final = {
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-store",
 }
-ONE_AT_A_TIME: Final = Lock()
-ELSEWHERE: Final = "cross-site"
-"""What a browser says of a request that a page of another site makes."""
+"""What every answer tells the browser."""
+
+_COMPUTING: Final = Lock()
+"""Held while an answer is computed: two at a time would be no quicker."""
 
 
-def application(bench: Bench) -> Starlette:
-    """The workbench as a web application."""
-    own = {f.name: f.read_text(encoding="utf-8") for f in (HERE / "static").iterdir()}
-    charts = {name: text for each in LANGUAGES for name, text in charts_file(each).items()}
+def make_application(bench: Bench) -> Starlette:
+    """Return the workbench as a web application."""
+    files = {file.name: file.read_text("utf-8") for file in STATIC.iterdir()}
+    files |= {"font.css": fonts.style_sheet()}
     with Views(bench.store) as views:
-        pages = [BenchPage(bench, views, language) for language in LANGUAGES]
-    return Starlette(
-        routes=[
-            *[Route(ADDRESSES[page.language], page.shown) for page in pages],
-            *[Route(f"/save/{page.language}", page.save, methods=["POST"]) for page in pages],
-            Route("/static/{name}", _static(shared_files() | charts | own)),
-        ]
-    )
+        about = views.about()
+    pages = [BenchPage(bench, about, language) for language in LANGUAGES]
 
-
-def _static(files: Mapping[str, str]) -> Callable[[Request], Response]:
-    def static(request: Request) -> Response:
+    def send_static(request: Request) -> Response:
         name = request.path_params["name"]
         if name not in files:
             raise HTTPException(404)
         kind = "text/css" if name.endswith(".css") else "text/javascript"
         return Response(files[name], media_type=kind, headers=HEADERS)
 
-    return static
+    return Starlette(
+        routes=[
+            *[Route(ADDRESSES[page.language], page.show) for page in pages],
+            *[Route(f"/save/{page.language}", page.save, methods=["POST"]) for page in pages],
+            Route("/static/{name}", send_static),
+        ]
+    )
 
 
 class BenchPage:
-    """The page of the workbench in one language."""
+    """The page of the workbench in one language.
 
-    def __init__(self, bench: Bench, views: Views, language: str) -> None:
-        self._bench, self.language = bench, language
-        self._edition = Edition(views, language, BenchCells)
-        self._template = environment(
-            *(HERE / "templates", SITE),
-            pgettext=pgettext,
-            text=text,
-            value_in_words=value_in_words,
-            SIMULATED=labels.SIMULATED,
-            method_name=labels.method,
-        ).get_template("workbench.html.j2")
+    Args:
+        bench: computes what is asked.
+        about: what is known about the database.
+        language: `nl` or `en`.
+    """
 
-    async def shown(self, request: Request) -> Response:
-        """The answer to an address; a page of another site cannot have one made."""
-        if request.headers.get("sec-fetch-site") == ELSEWHERE and request.query_params:
+    def __init__(self, bench: Bench, about: Mapping[str, str], language: str) -> None:
+        self._bench, self._about, self.language = bench, about, language
+
+    async def show(self, request: Request) -> Response:
+        """Answer an address; a page of another site cannot have one computed."""
+        if request.headers.get("sec-fetch-site") == "cross-site" and request.query_params:
             raise HTTPException(403)
-        page = await run_in_threadpool(self.html, dict(request.query_params))
+        page = await run_in_threadpool(self.render, dict(request.query_params))
         return HTMLResponse(page, headers=HEADERS)
 
     async def save(self, request: Request) -> Response:
-        """The command that shows all that a saved method changes; or why it is not saved."""
-        answer = await run_in_threadpool(self._saved, await request.body())
-        return JSONResponse(answer, headers=HEADERS)
+        """Save a method file, and say how to see all its effects."""
+        body = await request.body()
+        return JSONResponse(await run_in_threadpool(self._save, body), headers=HEADERS)
 
-    def _saved(self, body: bytes) -> dict[str, str]:
+    def _save(self, body: bytes) -> dict[str, str]:
         try:
             wanted = Saving.model_validate_json(body)
             path = self._bench.save(wanted)
@@ -117,60 +104,53 @@ class BenchPage:
             return {"refused": str(error.errors(include_url=False)[0]["msg"])}
         except HerijkError as error:
             return {"refused": str(spoken(error, self.language))}
-        base, data = self._bench.asked(wanted.address).base, self._bench.store.root
+        base, data = self._bench.read_address(wanted.address).base, self._bench.store.root
         return {"command": f"herijk compare {base} {path} --data {data}"}
 
-    def html(self, query: Mapping[str, str]) -> str:
-        """The page that answers an address; where it cannot be answered, the page that says so."""
-        asked = self._bench.asked(query)
+    def render(self, query: Mapping[str, str]) -> str:
+        """Return the page that answers an address, or the one that says why it cannot."""
+        asked = self._bench.read_address(query)
         try:
-            with ONE_AT_A_TIME:
-                page = results(self._bench, asked)
-            return self._html(asked, page, self._bench.changed(asked))
+            with _COMPUTING:
+                results = self._bench.compute_results(asked)
+            return self._render(asked, results, "")
         except HerijkError as error:
-            usual = self._bench.asked({"base": asked.base} if self._known(asked.base) else {})
-            return self._html(usual, refused=str(spoken(error, self.language)))
+            is_known = asked.base in (*list_shipped_methods(), *self._bench.known.own)
+            usual = self._bench.read_address({"base": asked.base} if is_known else {})
+            return self._render(usual, None, str(spoken(error, self.language)))
 
-    def _known(self, method: str) -> bool:
-        return method in (*list_shipped_methods(), *self._bench.known.own)
-
-    def _html(
-        self,
-        asked: Asked,
-        page: Page | None = None,
-        changed: Sequence[Difference] = (),
-        refused: str = "",
-    ) -> str:
-        ranges = self._bench.ranges(asked)
-        other = next(name for name in LANGUAGES if name != self.language)
-        shown = page or Page("index.html", text("workbench"), [])
-        data = page_json(shown).replace("<", "\\u003c")
-        return self._template.render(
-            **self._edition.names(shown),
-            stills={},
-            site="" if self.language == "nl" else "../",
-            root="",
-            data_path="",
+    def _render(self, asked: Asked, results: dict[str, Any] | None, refused: str) -> str:
+        bench = self._bench
+        ranges = bench.list_ranges(asked)
+        other = next(tag for tag in LANGUAGES if tag != self.language)
+        tows = results["tows"] if results else []
+        chosen = {"tow_id": tows[0] if tows else ""}
+        document = Document(Language(self.language), "", chosen)
+        return document.render(
+            "workbench",
             asked=asked,
-            changed=changed,
+            results=results,
             refused=refused,
-            data=Markup(data),  # noqa: S704 - no text in it closes the element
+            ranges=ranges,
+            changed=[] if refused else bench.list_changes(asked),
+            steps={} if refused else self._list_controls(asked, ranges),
             methods=list(list_shipped_methods()),
-            saved=list(self._bench.known.own),
-            editions=self._bench.editions(),
-            steps={} if refused else self._steps(asked, ranges),
-            ranges=[(str(r.first), range_in_words(r.first, r.last)) for r in ranges],
-            range_in_words=range_in_words,
-            is_whole=lambda d: (d.first, d.last) == (ranges[0].first, ranges[-1].last),
+            saved=list(bench.known.own),
+            editions=bench.list_editions(),
+            boats=bench.boats.select("fsn_no", "name").rows(),
+            simulated=self._about.get("simulated") == "true",
+            code_version=self._about.get("code_version", ""),
+            path="",
+            site_root="" if self.language == "nl" else "../",
             other=other,
             other_page=ADDRESSES[other] + asked.address(),
         )
 
-    def _steps(
+    def _list_controls(
         self, asked: Asked, ranges: tuple[SeasonSteps, ...]
     ) -> dict[str, list[tuple[Control, str | None]]]:
-        """The controls of each step, with what they hold in the seasons that are shown."""
-        method = self._bench.method(asked)
+        """Return the controls of each step, with their values in the seasons that are shown."""
+        method = self._bench.make_method(asked)
         shown = [
             SeasonSteps(first=r.first, last=r.last, steps=method.for_season(r.first))
             for r in ranges
@@ -178,15 +158,15 @@ class BenchPage:
         ]
         steps: dict[str, list[tuple[Control, str | None]]] = {}
         for control in CONTROLS.values():
-            steps.setdefault(control.step, []).append((control, control.held(shown)))
+            steps.setdefault(control.step, []).append((control, control.find_value(shown)))
         return steps
 
 
-def address(listening: socket.socket) -> str:
-    """Where a browser finds the workbench."""
+def get_address(listening: socket.socket) -> str:
+    """Return where a browser finds the workbench."""
     return f"http://{LOOPBACK}:{listening.getsockname()[1]}/"
 
 
-def serving(bench: Bench) -> uvicorn.Server:
-    """The server, to be run on a socket of `guard.listen`."""
-    return guarded(application(bench), LOOPBACK)
+def serve_bench(bench: Bench) -> uvicorn.Server:
+    """Return the server, to be run on a socket of `guard.listen`."""
+    return make_server(make_application(bench), LOOPBACK)

@@ -67,7 +67,7 @@ def simulate(
     with explain_machine_faults(directory), tows_counted() as counted:
         truth = write_simulated_archive(directory, simulate_world(settings), counted)
     made = {"archive": str(directory), "truth": str(truth)}
-    show(made, lambda made: [tell("Simulated archive: {archive}\nIts truth: {truth}", **made)])
+    show("simulated", made, ("archive", "truth"))
 
 
 @click.command(cls=Command)
@@ -85,9 +85,10 @@ def check(archive: Path | None, store: "Store") -> None:
 
     Reads lists, headers and a sample of the data; then settings, methods, tables and disk space.
     """
-    from herijk.cli.check_text import checked, text
+    from herijk.cli.checking import check_everything, list_answers
 
-    report = checked(archive, store)
-    show(report, text)
+    report = check_everything(archive, store)
+    data = vars(report) | {"answers": list_answers}
+    show("check", data, ("findings", "archive"))
     if not report.sound:
         raise click.exceptions.Exit(1)

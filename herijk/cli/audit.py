@@ -1,21 +1,31 @@
-"""`herijk audit`: the answer about a boat or a type, and with --steps all that is behind it."""
+"""`herijk audit`: a boat or types, as their pages have it; `herijk assess`: a tow on the quay."""
 
 import datetime as dt
-from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
-from herijk.cli.options import PATH, archive_option, as_json, data_option, json_option, show
+from herijk.cli.options import archive_option, data_option, json_option, show
 from herijk.cli.speaking import Command, argument, flag, option
-from pipeline.errors import HerijkError
-from pipeline.messages import LANGUAGE, tell
+from pipeline.messages import tell
 
 if TYPE_CHECKING:
-    from herijk.cli.render import Part
-    from warehouse.queries.audit import BoatAudit, TypesAudit
+    from dashboards.queries.results import Results
     from warehouse.store.store import Store
+
+BOAT_FIELDS: Final = (
+    *("simulated", "methods", "boat", "edition", "answers", "register", "tows", "curves", "steps"),
+    *("runs", "budget", "checks", "in_type", "repeat_pairs", "predicted", "options", "set_aside"),
+)
+TYPE_FIELDS: Final = (
+    *("simulated", "method", "methods", "types", "differences", "reproducibility"),
+)
+TOW_FIELDS: Final = (
+    *("method", "simulated", "tow", "curve", "runs", "checks", "verdict", "redo"),
+    *("first_assessment", "ways_to_use", "lost", "own_before", "of_type"),
+)
+"""What JSON has of a boat, of types, and of a tow on the quay."""
 
 
 @click.command(cls=Command)
@@ -30,7 +40,7 @@ if TYPE_CHECKING:
 @option("--edition", help="Edition or draft that a boat's answer is about. Default: the newest.")
 @flag("--steps", help="Also show the methods, tows, runs and statistics behind the answer.")
 @option("--method", help="Show this method only.")
-@option("--plots", type=PATH, help="Draw the plots in this folder.")
+@option("--tow", help="With --steps: show this tow only.")
 @json_option
 def audit(
     names: tuple[str, ...],
@@ -38,43 +48,83 @@ def audit(
     edition: str | None,
     steps: bool,
     method: str | None,
-    plots: Path | None,
+    tow: str | None,
 ) -> None:
     """Where a boat's number comes from, or whether boats of a type are equal.
 
     With --edition also the files, runs and seconds behind a line of a published edition.
     """
-    from herijk.cli import audit_text as text
-    from warehouse.queries import audit as query
+    from dashboards.queries import boats, types
+    from herijk.cli.options import as_json
+    from warehouse.queries.types import choose_type, find_boat
     from warehouse.store.editions import edition_names
     from warehouse.store.methods import KnownMethods
 
     if len(names) > 2:
         raise click.UsageError(tell("give a boat, or one or two types; quote a name with blanks"))
-    behind = None
-    if edition in edition_names(store):
-        from warehouse.editions.lineage import lineage
-
-        behind = lineage(store, str(edition), names[0])
-    if behind and (as_json() or not store.database.exists()):  # an edition says this by itself
-        show(behind, text.lineage)
+    is_published = edition in edition_names(store)
+    if is_published and (as_json() or not store.database.exists()):
+        show_lineage(store, str(edition), names[0])  # an edition says this by itself
         return
     if method is not None:
         KnownMethods.of(store).text(method)
-    report = query.audit(store, names, method)
-    drawn = [] if plots is None else _plots(store, report, plots)
 
-    def page(report: "BoatAudit | TypesAudit") -> "Iterator[Part]":
-        if isinstance(report, query.BoatAudit):
-            yield from text.boat(report, text.answers_of(store, report.boat, edition), steps)
+    from dashboards.queries.results import Results
+    from warehouse.queries.views import Views
+
+    with Views(store) as views:
+        results = Results(views)
+        shown_methods = _choose_methods(results, method)
+        fsn_no = find_boat(views, names[0]) if len(names) == 1 else None
+        simulated = views.about().get("simulated") == "true"
+        if fsn_no is not None:
+            data = boats.read_boat(results, fsn_no, edition=edition, methods=shown_methods)
+            data |= {"steps_shown": steps, "simulated": simulated}
+            chosen = {"tow_id": tow or "", "method": method or ""}
+            show("audit_boat", data, BOAT_FIELDS, chosen=chosen, folded=steps)
         else:
-            yield from text.types(report, steps)
-        if behind:
-            yield from text.lineage(behind)
-        if drawn:
-            yield tell("{} plots in {}", len(drawn), plots)
+            known = dict.fromkeys(choose_type(views, name) for name in names)
+            methods = _choose_type_methods(shown_methods, steps, method)
+            data = types.compare_types(results, list(known), methods)
+            quoted = " ".join(f'"{name}"' for name in known)
+            data |= {"steps_shown": steps, "simulated": simulated, "quoted_names": quoted}
+            show("audit_types", data, TYPE_FIELDS, folded=steps)
+    if is_published:
+        show_lineage(store, str(edition), names[0])
 
-    show(report, page)
+
+def _choose_methods(results: "Results", method: str | None) -> list[str]:
+    """Return the methods that an audit shows: all of the last rebuild, or the one asked for.
+
+    Raises:
+        MissingKnowledgeError: the last rebuild did not apply the method.
+    """
+    from pipeline.errors import MissingKnowledgeError
+
+    known: list[str] = results.views.table("methods")["method"].sort().to_list()
+    if method is None:
+        return known
+    if method not in known:
+        raise MissingKnowledgeError(
+            "the tables hold no method {!r}; they hold {}", method, ", ".join(known)
+        )
+    return [method]
+
+
+def _choose_type_methods(known: list[str], steps: bool, method: str | None) -> list[str]:
+    """Return the methods by which types are compared; the last gives the verdicts."""
+    from warehouse.queries.types import USUAL_METHODS
+
+    usual: list[str] = [name for name in USUAL_METHODS if name in known]
+    shown = known if method or not usual else usual
+    return shown if steps else list(dict.fromkeys((shown[0], shown[-1])))
+
+
+def show_lineage(store: "Store", edition: str, name: str) -> None:
+    """Print the files, runs and seconds behind the lines of a boat in an edition."""
+    from warehouse.editions.lineage import lineage
+
+    show("lineage", vars(lineage(store, edition, name)), ("about", "lines"))
 
 
 @click.command(cls=Command)
@@ -85,7 +135,7 @@ def audit(
 @json_option
 def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> None:
     """What a tow shows while the boat waits: provisional, and nothing is stored."""
-    from herijk.cli import audit_text as text
+    from dashboards.queries.quay import describe_tow
     from pipeline.method.definition import COMPLETE
     from pipeline.register.register import STUDIED_METHOD
     from warehouse.editions.publish import latest_before
@@ -98,17 +148,5 @@ def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> No
     in_force = None if edition is None else read_edition(store, edition).method
     chosen = in_force or KnownMethods.of(store).get(method or STUDIED_METHOD)
     found = tows.assess(store, archive, tow_id, chosen)
-    show(found, lambda report: text.assessment(report, chosen.interval == COMPLETE))
-
-
-def _plots(store: "Store", report: "BoatAudit | TypesAudit", folder: Path) -> list[Path]:
-    from dashboards.audit_plots import write_audit_plots
-
-    try:
-        return write_audit_plots(store, report, folder, LANGUAGE.get())
-    except OSError as error:
-        raise HerijkError(
-            "no plots, for {} cannot be written ({}); give another folder with --plots",
-            folder,
-            error.strerror,
-        ) from error
+    data = describe_tow(found, log_known=chosen.interval == COMPLETE)
+    show("tow", data, TOW_FIELDS)

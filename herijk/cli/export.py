@@ -12,6 +12,7 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGE, tell
 
 if TYPE_CHECKING:
+    from dashboards.queries.results import Data
     from warehouse.store.store import Store
 
 out_option = option("--out", type=PATH, help="PDF to write, or a folder for it.")
@@ -44,19 +45,28 @@ def certificate(
 ) -> None:
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
     from assets.settings import read_settings
-    from dashboards.documents.certificate import Issued, certificates
-    from warehouse.queries.answers import current_edition
+    from dashboards.queries.papers import read_certificates
+    from dashboards.queries.results import Results
     from warehouse.queries.views import Views
     from warehouse.store.boats import choose_boat
     from warehouse.store.unforeseen import documents
 
     with documents(store.root, "certificate") as border, Views(store) as views:
-        chosen = edition or current_edition(views)
+        chosen = Results(views).choose_edition(edition)
         fsn_no = boat and choose_boat(views.table("boats"), boat)
         settings = read_settings(store.root)
-        issued = Issued(day=as_of, issuer=settings.issuer, site=settings.site)
-        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), issued, border)
-        _write(store, made, "-".join(filter(None, ("certificate", chosen, fsn_no))), out)
+        made = read_certificates(
+            views,
+            chosen,
+            fsn_no,
+            day=as_of,
+            issuer=settings.issuer,
+            site=settings.site,
+            border=border,
+        )
+        name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
+        title = " ".join(filter(None, (tell("Certificate"), fsn_no, chosen)))
+        _write(store, "certificate", made, name, title, out, views.simulated(chosen))
 
 
 @export.command()
@@ -65,14 +75,14 @@ def certificate(
 @as_of_option
 def pages(out: Path, store: "Store", as_of: dt.date | None) -> None:
     """All pages of the site in a folder of their own, for instance as of an earlier day."""
-    from dashboards.site.render import OWN_FILES, build_pages
+    from dashboards.site import build_site
     from warehouse.store.unforeseen import documents
 
     is_new = not out.exists() or (out.is_dir() and not any(out.iterdir()))
-    if not is_new and not (out / "static" / OWN_FILES[0]).is_file():
+    if not is_new and not (out / "static" / "site.css").is_file():
         raise MissingKnowledgeError("{} is there and holds no pages; give a new folder", out)
     with documents(store.root, "pages") as border:
-        made = build_pages(store, out, as_of, bordered=border)
+        made = build_site(store, out, as_of, bordered=border)
         click.echo(tell("{} files in {}; begin with index.html", made["files"], out))
 
 
@@ -95,32 +105,51 @@ def proposal(
     out: Path | None,
 ) -> None:
     """What a board sends its members before they vote: what changes, for whom, how uncertain."""
-    from dashboards.documents import proposal as letters
+    from dashboards.queries.papers import read_proposal
     from warehouse.queries.views import Views
     from warehouse.store.methods import KnownMethods
     from warehouse.store.unforeseen import documents
 
-    name, letter = "-".join(("proposal", *methods)), letters.Letter(sender, date, valid_from)
+    name = "-".join(("proposal", *methods))
+    letter = {"sender": sender, "date": date, "valid_from": valid_from}
     with documents(store.root, name), Views(store) as views:
         known = KnownMethods.of(store)
-        made = letters.proposal(views, methods, against, LANGUAGE.get(), known, letter)
-        _write(store, made, name, out)
+        titles = {method: known.get(method).get_title(LANGUAGE.get()) for method in methods}
+        made = read_proposal(views, methods, against, titles, letter)
+        simulated = views.about().get("simulated") == "true"
+        title = "; ".join(titles.values())
+        _write(store, "proposal", [made], name, title, out, simulated)
 
 
-def _write(store: "Store", content: bytes | None, name: str, out: Path | None) -> None:
-    """Write the file whole, and print where; do nothing where nothing could be made.
+def _write(
+    store: "Store",
+    template: str,
+    pages: "list[Data]",
+    name: str,
+    title: str,
+    out: Path | None,
+    simulated: bool,
+) -> None:
+    """Write a document whole, and print where; do nothing where nothing could be made.
 
     Args:
         store: the data folder, which has the file where `out` is not given.
-        content: the document; None where it could not be made.
-        name: usual name of the document, without suffix.
+        template: the name of the template.
+        pages: what a query found, a page each.
+        name: usual name of the file, without suffix.
+        title: of the document.
         out: the file, which ends in `.pdf`, or a folder.
+        simulated: whether its boats are.
     """
-    if content is None:
+    if not pages:
         return
+    from dashboards.paper import make_pdf
     from warehouse.store.files import write_beside
     from warehouse.store.machine_faults import explain_machine_faults
 
+    made_by = pages[0].get("made_by") or pages[0].get("code_version", "")
+    footing = f"{tell('Made by code')} {made_by}"
+    content = make_pdf(template, pages, LANGUAGE.get(), title, simulated=simulated, footing=footing)
     usual = f"{name}.pdf"
     path = out or store.root / "documents" / usual
     if path.is_dir() or path.suffix.lower() != ".pdf":

@@ -2,7 +2,7 @@
 
 import datetime as dt
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -19,6 +19,10 @@ method_argument = argument(
 )
 
 
+METHOD_FIELDS: Final = ("method", "title", "description", "content_hash", "extends", "options")
+"""What JSON has of a method."""
+
+
 @click.group(cls=Group, invoke_without_command=True)
 @data_option
 @json_option
@@ -27,7 +31,6 @@ def methods(context: click.Context, store: "Store") -> None:
     """The methods: those that ship, and your own."""
     if context.invoked_subcommand is not None:
         return
-    from herijk.cli import methods_text as text
     from warehouse.store.methods import KnownMethods
 
     known = KnownMethods.of(store)
@@ -40,7 +43,7 @@ def methods(context: click.Context, store: "Store") -> None:
         }
         for method in map(known.get, known.names)
     ]
-    show({"methods": rows}, text.methods)
+    show("methods", {"methods": rows}, ("methods",))
 
 
 @methods.command("show")
@@ -49,9 +52,7 @@ def methods(context: click.Context, store: "Store") -> None:
 @json_option
 def show_method(name: str, store: "Store") -> None:
     """What a method does other than the one it extends; all its options where it extends none."""
-    from herijk.cli import methods_text as text
-
-    show(text.report_on(store, name), text.method)
+    show("method_file", _describe(store, name) | {"checked": ""}, METHOD_FIELDS)
 
 
 @methods.command()
@@ -60,15 +61,14 @@ def show_method(name: str, store: "Store") -> None:
 @json_option
 def check(name: str, store: "Store") -> None:
     """Read a method file and say what it does; an error is named with its line."""
-    from herijk.cli import methods_text as text
+    show("method_file", _describe(store, name) | {"checked": name}, METHOD_FIELDS)
 
-    report = text.report_on(store, name)
-    sound = tell(
-        "The file is sound. What it does to all boats: herijk compare {} {}",
-        report.extends or report.method,
-        name,
-    )
-    show(report, lambda shown: [*text.method(shown), sound])
+
+def _describe(store: "Store", name_or_file: str) -> dict[str, Any]:
+    from dashboards.queries.methods import describe_method
+    from warehouse.store.methods import KnownMethods
+
+    return describe_method(KnownMethods.of(store), name_or_file, LANGUAGE.get())
 
 
 @methods.command()
@@ -115,8 +115,9 @@ def compare(old: str, new: str, store: "Store", fatigue: str, as_of: dt.date | N
     """
     from typing import cast
 
-    from herijk.cli import compare_text as text
+    from dashboards.queries.comparison import compare as compare_editions
     from pipeline.register.replay import Fatigue, RaceRules
 
     rules = RaceRules(fatigue=cast(Fatigue, fatigue))
-    show(text.compared(store, old, new, rules, as_of), text.text)
+    data = compare_editions(store, old, new, rules, as_of)
+    show("compare", data, ("old", "new", "options", "effect"))

@@ -2,22 +2,20 @@
 
 import datetime as dt
 import re
-from collections.abc import Callable, Iterable
-from dataclasses import is_dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
 from herijk.cli.speaking import flag, option
-from pipeline.messages import tell
+from pipeline.messages import LANGUAGE, tell
 
 if TYPE_CHECKING:
-    from herijk.cli.render import Part
+    from dashboards.queries.results import Results
     from warehouse.store.store import Store
 
 F = TypeVar("F", bound=Callable[..., Any])
-R = TypeVar("R")
 
 PATH: Final = click.Path(path_type=Path)
 AS_JSON: Final = "herijk.as_json"
@@ -92,24 +90,108 @@ def as_json() -> bool:
     return bool(click.get_current_context().meta.get(AS_JSON))
 
 
-def show(report: R, as_page: "Callable[[R], Iterable[Part]]") -> None:
-    """Prints a result: as a page for a person, or as JSON with its statements for a program."""
-    if not as_json():
-        from herijk.cli.render import page
+def show(
+    template: str,
+    data: Mapping[str, Any],
+    fields: Sequence[str],
+    *,
+    chosen: Mapping[str, str] | None = None,
+    folded: bool = False,
+) -> None:
+    """Print a document: as text for a person, or its data and statements as JSON for a program.
 
-        click.echo(page(as_page(report)))
-        return
+    Args:
+        template: its name.
+        data: what its query found.
+        fields: names of `data` that JSON has (docs/json.md).
+        chosen: what selectors of the page say; rows of other choices are left out.
+        folded: whether to show what is folded on a page.
+    """
+    from dashboards.document import Document
+    from dashboards.language import Language
+
+    choices = dict(chosen or {})
+    shown = {name: _choose_rows(value, choices) for name, value in data.items()}
+    document = Document(Language(LANGUAGE.get()), "", choices, pictures=False)
+    frame = dict.fromkeys(("path", "site_root", "other", "other_page", "code_version"), "")
+    html = document.render(template, **{"simulated": False, "has_reports": False, **frame, **shown})
+    if as_json():
+        click.echo(_to_json({name: shown[name] for name in fields}, html))
+    else:
+        from dashboards.terminal import to_text
+
+        click.echo(to_text(html, folded=folded))
+
+
+def _choose_rows(value: Any, chosen: Mapping[str, str]) -> Any:
+    """Return a frame without rows of other choices; any other value as it is."""
+    import polars as pl
+
+    if not isinstance(value, pl.DataFrame):
+        return value
+    for name, choice in chosen.items():
+        if choice and name in value.columns:
+            value = value.filter(pl.col(name).cast(pl.String) == choice)
+    return value
+
+
+def _to_json(data: Mapping[str, Any], html: str) -> str:
+    """Return what a query found, frames as rows, and all that the document states about it."""
     from pydantic_core import to_json
 
-    result: object = report
-    if is_dataclass(report):
-        from herijk.cli.render import statements
+    from dashboards.reading import read_blocks
 
-        result = vars(report) | {"statements": statements(as_page(report))}
-    click.echo(to_json(result, indent=1, fallback=str).decode())
+    statements = []
+    for block in read_blocks(html, folded=True):
+        if block.said:
+            kind, _, verdict = block.said.partition(" ")
+            statements.append(
+                {"about": block.about, "kind": kind, "verdict": verdict, "text": block.text}
+            )
+    result = dict(data) | {"statements": statements}
+    return to_json(result, indent=1, fallback=_to_plain).decode()
+
+
+def _to_plain(value: Any) -> Any:
+    """Return a frame as rows, and anything else that JSON does not know as text."""
+    return value.to_dicts() if hasattr(value, "to_dicts") else str(value)
+
+
+def show_results(
+    store: "Store",
+    template: str,
+    query: "Callable[[Results], Mapping[str, Any]]",
+    fields: Sequence[str],
+    *,
+    as_of: dt.date | None = None,
+    follows: Sequence[str] | None = None,
+    folded: bool = False,
+) -> None:
+    """Print what a page of the site shows; see `show`.
+
+    Args:
+        store: the data folder.
+        template: the name of the template.
+        query: gives what it shows from the tables.
+        fields: names in what `query` gives that JSON has.
+        as_of: the day on which lines are judged.
+        follows: the selectors of the page whose first choice is shown; all when left out.
+        folded: whether to show what is folded on a page.
+    """
+    from dashboards.queries.results import Results
+    from warehouse.queries.views import Views
+
+    with Views(store, as_of) as views:
+        data = dict(query(Results(views)))
+        edition = data.get("edition")
+        about_archive = views.about().get("simulated") == "true"
+        simulated = views.simulated(edition) if edition else about_archive
+        chosen = data.get("chosen", {})
+        choices = {name: chosen[name] for name in (chosen if follows is None else follows)}
+        show(template, {"simulated": simulated} | data, fields, chosen=choices, folded=folded)
 
 
 def show_files(files: Iterable[Path], said: str | None = None) -> None:
-    """Says which files were written: their names, or a sentence about them."""
+    """Print which files were written: their names, or a sentence about them."""
     names = [str(file) for file in files]
-    show({"files": names}, lambda _: [said or "\n".join(names)])
+    show("files", {"files": names, "said": said}, ("files",))

@@ -5,7 +5,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import Day, as_of_option, data_option, json_option, show
+from herijk.cli.options import (
+    Day,
+    as_of_option,
+    data_option,
+    json_option,
+    show,
+    show_results,
+)
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import tell
@@ -33,20 +40,37 @@ def register(
     edition: str | None, due: bool, years: bool, store: "Store", as_of: dt.date | None
 ) -> None:
     """The register: every line with its sizes, and whether it is valid on a day."""
-    from herijk.cli import registers_text as text
-    from warehouse.queries.registers import due_report, register_report
+    from dashboards.queries import pages
 
     if years:
-        from warehouse.queries.years import years_report
-
-        show(years_report(store, _method_of(store, edition)), text.years)
+        method = _choose_method(store, edition)
+        show_results(
+            store,
+            "register_years",
+            lambda results: pages.read_years(results, method),
+            ("method", "simulated", "years", "causes", "lines", "winners"),
+            follows=("method",),
+        )
     elif due:
-        show(due_report(store, _method_of(store, edition), as_of), text.due)
+        method = _choose_method(store, edition)
+        show_results(
+            store,
+            "due_list",
+            lambda results: pages.read_due_list(results, method),
+            ("method", "simulated", "as_of", "lines"),
+            as_of=as_of,
+        )
     else:
-        show(register_report(store, edition, as_of), text.register)
+        show_results(
+            store,
+            "register_list",
+            lambda results: pages.read_register(results, edition),
+            ("edition", "simulated", "as_of", "lines"),
+            as_of=as_of,
+        )
 
 
-def _method_of(store: "Store", edition: str | None) -> str | None:
+def _choose_method(store: "Store", edition: str | None) -> str | None:
     """Return the method of an edition or draft; None where none is named."""
     if edition is None:
         return None
@@ -65,13 +89,13 @@ def _method_of(store: "Store", edition: str | None) -> str | None:
 @json_option
 def seasons(store: "Store", method: str | None) -> None:
     """What was wrong with log, force and wind in each season, and how sure that is."""
-    from herijk.cli import registers_text as text
-    from warehouse.queries.reports import log_error_report
+    from dashboards.queries import pages
     from warehouse.store.methods import KnownMethods
 
     if method is not None:
         KnownMethods.of(store).text(method)
-    show(log_error_report(store, method), text.seasons)
+    fields = ("method", "simulated", "factors", "parts", "diagnosis")
+    show_results(store, "season_list", lambda results: pages.read_seasons(results, method), fields)
 
 
 @click.command(cls=Command)
@@ -95,7 +119,6 @@ def publish(
     store: "Store",
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
-    from herijk.cli import registers_text as text
     from warehouse.editions import publish as editions
     from warehouse.store.methods import KnownMethods
 
@@ -109,7 +132,9 @@ def publish(
     else:
         chosen = KnownMethods.of(store).get(str(method))
         folder = editions.publish(store, chosen, terms, carry)
-    show(editions.published(store, folder), text.published)
+    made = editions.published(store, folder)
+    data = vars(made) | {"simulated": made.manifest.simulated}
+    show("published", data, tuple(vars(made)))
 
 
 @click.command(cls=Command)
@@ -118,7 +143,6 @@ def publish(
 @json_option
 def verify(store: "Store", head: str | None) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
-    from herijk.cli import registers_text as text
     from warehouse.editions.verify import verify as verify_editions
     from warehouse.store.editions import edition_names
 
@@ -127,6 +151,6 @@ def verify(store: "Store", head: str | None) -> None:
             "{} holds no editions and no tables; is it the right data folder?", store.root
         )
     report = verify_editions(store, head=head)
-    show(report, text.verify)
+    show("verify", vars(report), tuple(vars(report)))
     if report.wrong:
         raise click.exceptions.Exit(1)

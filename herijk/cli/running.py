@@ -35,7 +35,6 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     from assets.report import failed_checks
     from assets.settings import applied
     from herijk.cli.progress import rebuild_shown
-    from herijk.cli.rebuild_text import NoTowsYet, Rebuilt, text
     from warehouse.queries.reports import rebuild_report
     from warehouse.store.methods import KnownMethods
 
@@ -45,10 +44,17 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
         with explain_machine_faults(store.root), rebuild_shown():
             news = run(archive, store.root, chosen, seasons)
     except NoTowsYetError as error:  # a new archive is no failure
-        reason = spoken(error, LANGUAGE.get())
-        show(NoTowsYet(reason), lambda made: [tell("Nothing to compute yet: {}", made.reason)])
+        show("no_tows", {"reason": spoken(error, LANGUAGE.get())}, ("reason",))
         return
-    show(Rebuilt(rebuild_report(store), news), text)
+    report = rebuild_report(store)
+    data = {
+        "report": report,
+        "since": news,
+        "simulated": report.simulated,
+        "counts": [row | {"lost": f"lost_{row['lost']}"} for row in report.set_aside],
+        "tows_by_season": ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons),
+    }
+    show("rebuild", data, ("report", "since"))
     if failed := failed_checks(news.checks):
         raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
 
@@ -92,13 +98,12 @@ def workbench(store: "Store", port: int) -> None:
     """Change a method's options in a browser and see at once what happens to all boats."""
     from dashboards.guard import listen
     from dashboards.workbench.bench import Bench
-    from dashboards.workbench.server import LOOPBACK, address, serving
+    from dashboards.workbench.server import LOOPBACK, get_address, serve_bench
     from warehouse.queries.history import History
 
     listening = listen(LOOPBACK, port)
     bench = Bench(store, History.of(store))
-    click.echo(
-        tell("The workbench is at {} (on this machine only); Ctrl-C stops it.", address(listening))
-    )
+    where = get_address(listening)
+    click.echo(tell("The workbench is at {} (on this machine only); Ctrl-C stops it.", where))
     with suppress(KeyboardInterrupt):
-        serving(bench).run(sockets=[listening])
+        serve_bench(bench).run(sockets=[listening])

@@ -23,7 +23,7 @@ from starlette.responses import RedirectResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from dashboards.guard import LOOPBACK, guarded, listen
+from dashboards.guard import LOOPBACK, listen, make_server
 from pipeline.errors import UnavailableError
 from pipeline.messages import LANGUAGE, say
 
@@ -106,7 +106,7 @@ def site_app(data: Path) -> Starlette:
 @contextmanager
 def _site(what: Served) -> Iterator[None]:
     with listen(what.host, what.port + 1) as listening:
-        server = guarded(site_app(what.data), what.host)
+        server = make_server(site_app(what.data), what.host)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
         thread.start()
         yield

@@ -26,6 +26,7 @@ from pipeline.season_log.observation_model import (
 )
 from pipeline.season_log.season_levels import SeasonLevel, compare_season_levels
 from pipeline.tables.frames import dtypes
+from pipeline.tables.keys import SEASON_LEVEL
 from pipeline.tables.season_log import SeasonDiagnosis
 
 FAULT_PROBABILITY: Final = 0.5
@@ -45,8 +46,6 @@ CANNOT_BE_TOLD: Final = "cannot be told"
 WOULD_NOT_SHOW: Final = "would not show"
 ALTERED_BOAT: Final = "altered_boat"
 """What a fault that one boat alone shows may be instead."""
-SEASON_LEVEL: Final = "season_level"
-"""What all tows of a season have in common (`season_levels`), among the instruments."""
 LEVEL_CAUSES: Final = ("mass_on_board", "water_depth", "waves", "force_not_linear")
 """What a level of a season may be that is no fault of the model."""
 MAX_LEVEL: Final = np.log(1.02)

@@ -7,3 +7,6 @@ LINE: Final = ("fsn_no", "rowers", "crew_class")
 
 SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
 """What the register says of a boat on the day of its tow (Sleepproef 2017, "Opmetingen")."""
+
+SEASON_LEVEL: Final = "season_level"
+"""Among the instruments of `season_diagnosis`: what all tows of a season have in common."""

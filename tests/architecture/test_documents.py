@@ -4,8 +4,8 @@ import ast
 import re
 
 import pytest
-
 from dashboards.figures import FIGURES
+
 from herijk.cli.main import app
 from pipeline.assessment.checks import CODES
 from pipeline.method.options import Steps

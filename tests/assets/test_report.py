@@ -6,10 +6,10 @@ import json
 import dagster as dg
 import polars as pl
 import pytest
-
-from assets.report import Done, failed_checks
 from dashboards.speech import Speech
 from dashboards.statements.rebuild import Check, headlines
+
+from assets.report import Done, failed_checks
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.edition_bench import EditionBench

@@ -8,9 +8,9 @@ import duckdb
 import pytest
 
 from dashboards.guard import listen
-from dashboards.site.render import build_site
+from dashboards.site import build_site
 from dashboards.workbench.bench import Bench
-from dashboards.workbench.server import LOOPBACK, address, serving
+from dashboards.workbench.server import LOOPBACK, get_address, serve_bench
 from pipeline.method.reading import read_shipped_method
 from tests.conftest import METHODS, Workbench, shared
 from tests.dashboards.browser import CHROMIUM, FLAGS, HIDDEN_BARS, OWN, WIDTHS
@@ -88,10 +88,10 @@ def workbench(history, built, tmp_path):
 def url(workbench):
     """The address at which it is served."""
     held = listen(LOOPBACK, 0)
-    server = serving(workbench)
+    server = serve_bench(workbench)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [held]})
     thread.start()
-    yield address(held)
+    yield get_address(held)
     server.should_exit = True
     thread.join()
 

@@ -11,11 +11,11 @@ import subprocess
 import sys
 
 import pytest
+from dashboards.site.pages import MENU
+from dashboards.site.start import ABOUT
 
 from dashboards.addresses import boat_path, edition_page, race_path, type_path
 from dashboards.guides import GUIDES
-from dashboards.site.pages import MENU
-from dashboards.site.start import ABOUT
 from tests.architecture.repository import ROOT, read
 from tests.dashboards.browser import (
     IN_CI,

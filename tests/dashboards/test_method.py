@@ -5,60 +5,57 @@ import re
 import polars as pl
 import pytest
 
-from dashboards.option_labels import text
-from dashboards.speech import Speech
-from dashboards.statements.edition import NEGLIGIBLE
-from dashboards.statements.method import explained, voted_steps
+from dashboards.document import Document
+from dashboards.language import Language
+from dashboards.queries.boats import NEGLIGIBLE_CHANGE
+from dashboards.queries.methods import read_method
+from dashboards.queries.results import Results
+from dashboards.reading import read_blocks
+from dashboards.templates import get_template
 from pipeline.method.options import Steps, find_basis
 from pipeline.method.reading import read_shipped_method
 from pipeline.method.variant import differences
 from tests.conftest import METHODS
 from warehouse.queries.views import Views
 
-ENGLISH = Speech("en")
 FIRST, METHOD = METHODS
 
 
 @pytest.fixture(scope="module")
-def views(built):
+def explained(built):
     with Views(built.store) as views:
-        yield views
+        return {name: read_method(Results(views), name) for name in METHODS}
 
 
-@pytest.fixture(scope="module")
-def told(views):
-    return explained(views, METHOD)
-
-
-def the_step(told, name):
-    (step,) = (step for step in told.steps if step.name == text(f"step.{name}"))
-    return step
-
-
-def test_an_effect_is_the_median_of_the_tows_that_a_step_changes(built, told):
+def test_an_effect_is_the_median_of_the_tows_that_a_step_changes(built, explained):
     ladder = built.table("correction_steps").filter(to_method=METHOD, step="window")
-    moved = ladder.filter((pl.col("factor") - 1).abs() >= NEGLIGIBLE)
-    effect = the_step(told, "window").statements[0]
-    assert (effect.values["moved"], effect.values["tows"]) == (moved.height, ladder.height)
-    assert effect.values["median"].ratio == moved["factor"].median()
-    largest = ladder.filter(tow_id=effect.values["tow"])["factor"][0]
+    moved = ladder.filter((pl.col("factor") - 1).abs() >= NEGLIGIBLE_CHANGE)
+    (effect,) = [one["effect"] for one in explained[METHOD]["steps"] if one["step"] == "window"]
+    assert (effect["moved"], effect["tows"]) == (moved.height, ladder.height)
+    assert effect["median"] == moved["factor"].median()
+    largest = ladder.filter(tow_id=effect["tow"])["factor"][0]
     assert abs(pl.Series([largest]).log()[0]) == ladder["factor"].log().abs().max()
 
 
-def test_every_step_is_explained_and_every_change_is_voted_on(told):
-    assert {step.name for step in told.steps} == {
-        text(f"step.{name}") for name in Steps.model_fields
-    }
+def test_every_step_is_explained_and_every_change_is_voted_on(explained):
+    data = explained[METHOD]
+    assert {one["step"] for one in data["steps"]} == set(Steps.model_fields)
     changed = differences(read_shipped_method(METHOD), read_shipped_method(FIRST))
-    voted = [s.values["options"] for s in told.vote if "options" in s.values]
-    options = [option for steps in voted for step in steps for option in step.values["options"]]
-    assert sorted(option.values["option"] for option in options) == sorted(
-        text(f"{one.step}.{one.option}") for one in changed
+    voted = [
+        (one["step"], one["option"], one["first"])
+        for steps in data["voted"].values()
+        for options in steps.values()
+        for one in options
+    ]
+    assert sorted(voted) == sorted((one.step, one.option, one.first) for one in changed)
+
+
+def test_a_boat_worked_through_adds_up_as_printed(explained):
+    names = Document(Language("en")).get_names()
+    html = (
+        get_template("method_parts.html.j2").make_module(names).worked(explained[METHOD]["worked"])
     )
-
-
-def test_a_boat_worked_through_adds_up_as_printed(told):
-    said = {one.kind: one(ENGLISH).replace("\N{MINUS SIGN}", "-") for one in told.worked.statements}
+    said = {b.said: b.text.replace("\N{MINUS SIGN}", "-") for b in read_blocks(str(html))}
     numbers = {
         kind: [*map(float, re.findall(r"[-+]?\d+(?:\.\d+)?", s))] for kind, s in said.items()
     }
@@ -83,8 +80,5 @@ def test_a_value_has_the_status_of_who_asked_for_it(value, status):
     assert find_basis("run_point", "estimator", value).status == status
 
 
-def test_steps_by_status_fit_on_a_slide(views):
-    said = {one.kind: one(ENGLISH) for one in voted_steps(views, METHOD)}
-    assert "Window" in said["decided"]
-    assert "Wind" in said["proposed"]
-    assert explained(views, FIRST).worked is None
+def test_the_first_method_has_nothing_to_work_through(explained):
+    assert explained[FIRST]["worked"] is None

@@ -7,14 +7,14 @@ import urllib.request
 from urllib.parse import urlencode
 
 import pytest
+from dashboards.figures.style import SCENARIO
+from dashboards.workbench.results import results
 from polars.testing import assert_frame_equal
 
 from dashboards import option_labels as texts
-from dashboards.figures.style import SCENARIO
 from dashboards.guard import listen
 from dashboards.workbench.bench import Saving
 from dashboards.workbench.form import CONTROLS, write
-from dashboards.workbench.results import results
 from dashboards.workbench.server import LOOPBACK
 from pipeline.assessment.checks import CODES
 from pipeline.errors import HerijkError, UnavailableError

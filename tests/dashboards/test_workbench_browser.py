@@ -4,8 +4,8 @@ Needs Chromium, like the tests of the site.
 """
 
 import pytest
-
 from dashboards.speech import Speech
+
 from pipeline.method.reading import parse_method
 from tests.conftest import METHODS
 from tests.dashboards.browser import NEEDED, WIDTHS, barriers, draw_all, picture, too_wide

@@ -13,11 +13,11 @@ from unittest import mock
 import numpy as np
 import polars as pl
 import pytest
-
 from dashboards.site.boats import boat_pages
 from dashboards.site.pages import method_names, shared_pages
 from dashboards.speech import Speech
 from dashboards.statements import Statement
+
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.seen import Seen
 from pipeline.blocks.tows import Tows

@@ -5,9 +5,9 @@ import shutil
 import numpy as np
 import polars as pl
 import pytest
-
 from dashboards.speech import Speech
 from dashboards.statements.tow import statements
+
 from pipeline.method.reading import read_shipped_method
 from tests.conftest import METHODS, SMALL
 from tests.warehouse.archive.conftest import TOWS, small_archive

@@ -6,10 +6,10 @@ import re
 import duckdb
 import polars as pl
 import pytest
-
 from dashboards.labels import code
 from dashboards.speech import Speech
 from dashboards.statements.boat_type import describe_slope
+
 from tests.conftest import METHODS
 
 

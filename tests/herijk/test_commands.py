@@ -5,8 +5,8 @@ import shutil
 
 import pytest
 from click.testing import CliRunner
-
 from herijk.cli.forms import FORMS
+
 from herijk.cli.main import SECTIONS, app
 from pipeline.messages import LANGUAGES
 

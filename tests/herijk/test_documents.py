@@ -4,8 +4,8 @@ import shutil
 
 import pypdf
 import pytest
-
 from dashboards.documents import certificate, proposal
+
 from dashboards.site import render
 from tests.conftest import METHODS
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import polars as pl
 import pytest
-from python_calamine import load_workbook
-
 from dashboards.speech import Speech
 from dashboards.statements.rebuild import LastRun, judged, mail, verdict
+from python_calamine import load_workbook
+
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.errors import MissingKnowledgeError

@@ -8,9 +8,9 @@ import tomllib
 
 import duckdb
 import pytest
+from herijk.cli.audit_text import STEPS
 
 from assets.settings import Settings
-from herijk.cli.audit_text import STEPS
 from herijk.cli.main import app
 from pipeline.messages import LANGUAGES, speaker
 from tests.architecture.repository import ROOT, read

@@ -3,10 +3,10 @@
 import duckdb
 import polars as pl
 import pytest
+from warehouse.queries.audit import audit, differences
 
 from pipeline.errors import MissingKnowledgeError
 from tests.conftest import METHODS
-from warehouse.queries.audit import audit, differences
 
 
 def change(bench, *statements):

@@ -16,7 +16,7 @@ from pipeline.messages import DECIMALS, spoken
 from pipeline.method.definition import COMPLETE
 from pipeline.register.printed import NOT_REBASED, REBASED
 from pipeline.register.register import NEWER_TOW_UNMEASURED
-from pipeline.register.words import name_cause
+from pipeline.tables.causes import name_cause
 from pipeline.tables.row import Row
 from warehouse.editions.compare import report
 from warehouse.store.editions import CHANGES, NOTICE, NOTICE_EN, Edition

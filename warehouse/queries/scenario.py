@@ -13,13 +13,11 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.consistency.compared import place_beside_type
-from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.curve import VALID_RATIO, s_of_height
 from pipeline.register.changes import compare_lines, largest_first
 from pipeline.studies.summaries import season_changes
 from warehouse.queries.history import Draft
-from warehouse.queries.views import ALL, curve_figure
+from warehouse.queries.views import curve_figure
 
 LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
 """Speeds at which a curve is drawn / declared speed."""
@@ -69,23 +67,6 @@ class Scenario:
         """Cw after / Cw before of all tows: median and range per season."""
         curves = self.both(lambda draft: draft.made.curves)
         return season_changes(curves, self.before.method).sort("season")
-
-    def type_tows(self, tows: str = ALL) -> pl.DataFrame:
-        """Tows of boats of a known type under both methods, as `compared_tows` has them.
-
-        Args:
-            tows: `ALL`, or the `NEWEST` of each boat and crew.
-        """
-
-        def of(draft: Draft) -> pl.DataFrame:
-            observed = draft.observed
-            return place_beside_type(observed if tows == ALL else observed.filter("newest"))
-
-        compared = self.both(of)
-        named = compared.filter(pl.col("boat_type") != UNKNOWN_TYPE).join(
-            self._names.drop("boat_type"), on="fsn_no", how="left", maintain_order="left"
-        )
-        return named.select(TYPE_COLUMNS)
 
     def boat_figure(self, fsn_no: str) -> pl.DataFrame:
         """Return what the figure of a boat's curves draws: see `curve_figure`, at 13 speeds."""

@@ -17,8 +17,6 @@ from warehouse.store.editions import edition_names, edition_path, read_manifest,
 from warehouse.store.store import Store
 
 DRAFT: Final = "concept-"
-ALL, NEWEST = "all", "newest"
-"""Which tows of a boat and crew are looked at."""
 
 
 class Views:
@@ -135,12 +133,6 @@ WHERE comment IS NOT NULL ORDER BY 1
 SELECT method, code, number FROM quality_counts WHERE kind = ? AND scope = 'all'
 ORDER BY method, number DESC, code
 """,
-    # The curves of all tows of a boat under every method, with season and crew.
-    "curve_points_of": """
-SELECT p.*, t.season, t.rowers || t.crew_class AS crew, coalesce(b.name, t.fsn_no) AS name
-FROM curve_points AS p JOIN tows AS t USING (tow_id) LEFT JOIN boats AS b USING (fsn_no)
-WHERE t.fsn_no = ? ORDER BY method, tow_id, speed_m_s
-""",
     # Curves with the day, name and what was on board.
     "curves": """
 SELECT c.*, t.tow_date, t.weight_kg, t.water_temperature_c, t.altered, b.name, b.boat_type,
@@ -174,6 +166,15 @@ WITH standing_out AS (
 )
 SELECT o.*, b.name FROM standing_out AS o LEFT JOIN boats AS b USING (fsn_no)
 ORDER BY method, abs(deviation_sd) DESC, tow_id, quantity
+""",
+    # The log factor of each season, and what it rests on.
+    "log_factors": """
+SELECT f.*, l.n_tows, l.n_links FROM log_factors AS f
+LEFT JOIN (
+    SELECT method, season, sum(n_tows) AS n_tows, sum(n_links) AS n_links
+    FROM season_links GROUP BY method, season
+) AS l USING (method, season)
+ORDER BY season, method
 """,
     "race_days": "SELECT DISTINCT race, race_date FROM race_changes ORDER BY race_date DESC, race",
     # Results of races under two editions, with the boat's name.
@@ -213,7 +214,7 @@ SELECT p.* REPLACE ((wind_angle_deg + 180) % 360 - 180 AS wind_angle_deg),
        t.fsn_no, t.season, t.declared_speed_m_s
 FROM run_points AS p JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run
 """,
-    "season_diagnosis": SIZED_FAULTS,
+    "season_diagnosis": f"SELECT * FROM ({SIZED_FAULTS}) ORDER BY season, part, instrument, method",  # noqa: S608
     # Curves per method, season and status.
     "statuses": """
 SELECT method, CAST(scope AS INTEGER) AS season, code AS status, number

@@ -43,9 +43,9 @@ def code_version() -> str:
 
 
 _ROOT: Final = Path(__file__).parents[2]
-_CODE: Final = (".py", ".html", ".css", ".js", ".mo", ".md")
-_DECLARED: Final = ("tables",)
-"""Rooms of `pipeline` that compute nothing: declared types are in fingerprints."""
+_CODE: Final = (".py", ".html", ".j2", ".typ", ".css", ".js", ".mo", ".md")
+_NOT_HASHED: Final = ("tables", "compiled")
+"""Folders left out: declared types are in fingerprints, compiled templates follow from others."""
 
 
 def _modules(package: str) -> list[Path]:
@@ -57,4 +57,4 @@ def _modules(package: str) -> list[Path]:
     if not spec.submodule_search_locations:
         return [file]
     files = (f for f in file.parent.rglob("*.*") if f.suffix in _CODE)
-    return [f for f in files if f.parent.name not in _DECLARED]
+    return [f for f in files if f.parent.name not in _NOT_HASHED]

@@ -1,0 +1,373 @@
+"""The kinds of chart, each drawn from rows of the tables. Nothing is computed here.
+
+`draw_groups` has a value by season or tow, `draw_curves` a resistance curve, `draw_scatter` the
+tows of a type, `draw_gains` a bar for every crew, `draw_shares` a bar for every cause, and
+`trace_lines` with `trace_frame` what instruments said second by second.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import polars as pl
+from markupsafe import Markup, escape
+
+from dashboards import words
+from dashboards.language import Language
+from dashboards.plot import GREY, INKS, Plot, Scale, fit_scale
+from pipeline.messages import say
+from pipeline.method.definition import COMPLETE
+from pipeline.method.reading import list_shipped_methods
+from pipeline.tables.row import Row
+
+SPEED: Final = say("Speed through water [m/s]")
+SECONDS: Final = say("Seconds in a race of two hours [s]")
+
+TRACES: Final = (
+    (say("Speed [m/s]"), (("speed_m_s", None), ("gps_m_s", "3 2"))),
+    (say("Tow force [N]"), (("force_n", None),)),
+    (say("Apparent wind [m/s]"), (("wind_m_s", None),)),
+)
+"""From top to bottom: the title of a row, and of each of its lines the column and the dash."""
+
+TRACE_WIDTH_PX, TRACE_HEIGHT_PX, TRACE_TOP_PX = 960, 430, 50
+TRACE_ROW_PX: Final = 118
+TRACE_GAP_PX: Final = 12
+"""Between runs."""
+
+CW_ENDS: Final = ("cw_lo_kg_m", "cw_hi_kg_m")
+
+
+def draw_groups(
+    language: Language,
+    rows: pl.DataFrame,
+    group: str,
+    value: str,
+    ends: tuple[str, str],
+    caption: str,
+    *,
+    with_one: bool = False,
+    title: str = "",
+) -> Markup:
+    """Return a value of every method, side by side for each season or tow, with its interval.
+
+    Args:
+        language: of what is written.
+        rows: with `method`, the columns named, and perhaps the `interval` of the method.
+        group: the column by which rows are grouped.
+        value: the column drawn.
+        ends: the columns of its interval.
+        caption: of the picture.
+        with_one: draw a line at 1, for ratios.
+        title: of the axis; that of the column when left out.
+    """
+    known = rows.drop_nulls(value).to_dicts()
+    if not known:
+        return Markup()
+    methods = list(dict.fromkeys(row["method"] for row in known))
+    groups = list(dict.fromkeys(row[group] for row in known))
+    legend = {_get_method_kind(name): language.name_method(name) for name in methods}
+    plot = Plot(language, legend=legend)
+    drawn = [row[name] for row in known for name in (value, *ends)]
+    y = plot.fit_y(drawn, including=[1.0] if with_one else [], bulk=group == "tow")
+    plot.add_axes(None, y, "", title or language.get_title(value))
+    width = (plot.right - plot.left) / len(groups)
+    if with_one:
+        plot.add_path(
+            f"M{plot.left} {y(1):.1f}H{plot.right}", GREY, style={"stroke-dasharray": "4 3"}
+        )
+    _label_groups(plot, [language.name_code(str(name)) for name in groups], width)
+    for row in known:
+        kind = _get_method_kind(row["method"])
+        place = (methods.index(row["method"]) + 1) / (len(methods) + 1)
+        x = plot.left + (groups.index(row[group]) + place) * width
+        low, high = row[ends[0]], row[ends[1]]
+        if low is not None and high is not None:
+            is_dashed = row.get("interval", COMPLETE) != COMPLETE
+            plot.add_interval(x, y(low), y(high), kind, dashed=is_dashed)
+        plot.add_point(x, y(row[value]), kind, _write_tip(language, row, group, "method", value))
+    plot.add_legend(legend)
+    return plot.to_svg(caption)
+
+
+LABEL_PX: Final = 62
+"""Room that the label of a group takes."""
+
+
+def _label_groups(plot: Plot, names: Sequence[str], width: float) -> None:
+    """Write the name of every group, or of every few where they would touch."""
+    every = max(1, -(-LABEL_PX // max(1, int(width)))) if len(names[0]) > 4 else 1
+    for place, name in enumerate(names):
+        if place % every == 0:
+            plot.add_text(plot.left + (place + 0.5) * width, plot.bottom + 17, name, "middle")
+
+
+def _get_method_kind(method: str) -> int:
+    """Return the kind of mark of a method; one that ships has the same in every chart."""
+    known = list(list_shipped_methods())
+    return known.index(method) if method in known else len(known)
+
+
+def draw_curves(
+    language: Language, rows: pl.DataFrame, caption: str, width: int = 480, height: int = 300
+) -> Markup:
+    """Return a curve of Cw with its band, the run points, and the interval at declared speed.
+
+    Args:
+        language: of what is written.
+        rows: of `kind` line, point and declared, as `curve_figure` gives them.
+        caption: of the picture.
+        width: of the picture [px].
+        height: of the picture [px].
+    """
+    line, points, declared = (
+        rows.filter(kind=kind).to_dicts() for kind in ("line", "point", "declared")
+    )
+    plot = Plot(language, width, height)
+    x = plot.fit_x([row["speed_m_s"] for row in line + points])
+    y = plot.fit_y([row.get(name) for row in line + points for name in ("cw_kg_m", *CW_ENDS)])
+    plot.add_axes(x, y, language.say(SPEED), "Cw [kg/m]")
+    band = [row for row in line if row.get("cw_lo_kg_m") is not None]
+    plot.add_band(
+        [x(row["speed_m_s"]) for row in band],
+        [y(row["cw_lo_kg_m"]) for row in band],
+        [y(row["cw_hi_kg_m"]) for row in band],
+    )
+    through = [(x(row["speed_m_s"]), y(row["cw_kg_m"])) for row in line]
+    plot.add_line(through, "currentColor", style={"stroke-width": 2})
+    for row in declared:
+        if row["cw_lo_kg_m"] is not None:
+            low, high = y(row["cw_lo_kg_m"]), y(row["cw_hi_kg_m"])
+            is_dashed = row["interval"] != COMPLETE
+            plot.add_interval(x(row["speed_m_s"]), low, high, len(INKS) - 1, dashed=is_dashed)
+    for row in points:
+        tip = _write_tip(language, row, "run", "speed_m_s", "cw_kg_m")
+        kind = int(row["direction"] < 0)
+        plot.add_point(x(row["speed_m_s"]), y(row["cw_kg_m"]), kind, tip, filled=row["used"])
+    if points:
+        plot.add_legend(
+            {0: language.say(words.name_direction(1)), 1: language.say(words.name_direction(-1))}
+        )
+    return plot.to_svg(caption)
+
+
+def draw_scatter(
+    language: Language,
+    tows: pl.DataFrame,
+    lines: pl.DataFrame,
+    quantity: str,
+    ends: tuple[str, str],
+    explaining: str,
+    caption: str,
+) -> Markup:
+    """Return a quantity of the tows of a type against what may explain it, a panel per method.
+
+    Args:
+        language: of what is written.
+        tows: rows of `compared_tows` with the `interval` of the method, the `label` of the tow and
+            the `page` of its boat.
+        lines: rows of `type_line_points` of the same type and methods.
+        quantity: the column along the side.
+        ends: the columns of its interval.
+        explaining: the column along the bottom.
+        caption: of the picture.
+    """
+    known = tows.drop_nulls([quantity, explaining])
+    every = [*known[quantity], *known[ends[0]], *known[ends[1]]]
+    panels = []
+    for method in known["method"].unique(maintain_order=True):
+        plot = Plot(language, 380, 290)
+        x, y = plot.fit_x(known[explaining], bulk=True), plot.fit_y(every, bulk=True)
+        named = language.name_method(method)
+        plot.add_axes(x, y, language.get_title(explaining), language.get_title(quantity))
+        own = lines.filter(method=method, quantity=quantity, explaining=explaining)
+        for of_class in own.partition_by("crew_class", maintain_order=True):
+            at = [x(value) for value in of_class["x"]]
+            plot.add_band(at, [y(v) for v in of_class["lo"]], [y(v) for v in of_class["hi"]])
+            plot.add_line(list(zip(at, map(y, of_class["y"]), strict=True)), GREY)
+        for row in known.filter(method=method).to_dicts():
+            _add_tow(plot, x, y, row, quantity, ends, explaining)
+        plot.add_legend({CREW_KINDS[crew]: language.name_crew(crew) for crew in CREW_KINDS})
+        picture = plot.to_svg(f"{caption}: {named}")
+        panels.append(Markup("<div><b>{}</b>{}</div>").format(named, picture))
+    return Markup('<div class="panels">{}</div>').format(Markup("").join(panels))
+
+
+CREW_KINDS: Final = {"H": 0, "D": 2}
+"""A circle for men's crews, a triangle for women's."""
+
+
+def _add_tow(
+    plot: Plot,
+    x: Scale,
+    y: Scale,
+    row: Row,
+    quantity: str,
+    ends: tuple[str, str],
+    explaining: str,
+) -> None:
+    """Add a tow with its interval, and its name where it stands out in Cw."""
+    kind = CREW_KINDS[row["crew_class"]]
+    at, up = x(row[explaining]), y(row[quantity])
+    low, high = row[ends[0]], row[ends[1]]
+    if low is not None:
+        is_dashed = row["interval"] != COMPLETE
+        reach = plot.top if high is None else y(high)  # no upper end: to the edge
+        plot.add_interval(at, y(low), reach, kind, dashed=is_dashed)
+    tip = f"{row['label']} · {_write_tip(plot.language, row, explaining, quantity)}"
+    plot.add_point(at, up, kind, tip, filled=not row["beyond_curve"], page=row["page"])
+    if row["cw_outside"] or not y.low <= row[quantity] <= y.high:
+        is_right = at > (plot.left + plot.right) / 2
+        anchor, side = ("end", -7) if is_right else ("start", 7)
+        plot.add_text(at + side, up - 5, row["label"], anchor, size=10)
+
+
+def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
+    """Return a bar for every crew: what a race of two hours at equal power gains or loses.
+
+    Args:
+        language: of what is written.
+        lines: with `gain_in_two_hours_s` [s] and the boat and crew.
+        caption: of the picture.
+    """
+    known = lines.drop_nulls("gain_in_two_hours_s")
+    rows = known.sort("gain_in_two_hours_s", "fsn_no", descending=[True, False])
+    if rows.is_empty():
+        return Markup()
+    plot = Plot(language, height=240)
+    gains = rows["gain_in_two_hours_s"]
+    y = fit_scale(gains, plot.bottom, plot.top, including=[0.0])
+    plot.add_axes(None, y, "", language.say(SECONDS))
+    width = (plot.right - plot.left) / rows.height
+    for place, row in enumerate(rows.to_dicts()):
+        gain = row["gain_in_two_hours_s"]
+        x = plot.left + (place + 0.5) * width
+        crew = f"{row['name'] or row['fsn_no']} {row['rowers']}{row['crew_class']}"
+        tip = f"{crew}: {language.write_number(gain, 0, '+')} s"
+        ink = INKS[1] if gain < 0 else INKS[0]
+        bar = f"M{x:.1f} {y(0):.1f}V{y(gain):.1f}"
+        plot.add_path(bar, ink, tip, {"stroke-width": round(0.85 * width, 1)})
+    return plot.to_svg(caption)
+
+
+def draw_shares(
+    language: Language, rows: pl.DataFrame, name: str, value: str, caption: str
+) -> Markup:
+    """Return a bar to the right for every row, the largest first.
+
+    Args:
+        language: of what is written.
+        rows: of one tow and method.
+        name: the column of codes that name the bars.
+        value: the column of their length, a share.
+        caption: of the picture.
+    """
+    known = rows.drop_nulls(value).sort(value, descending=True).to_dicts()
+    if not known:
+        return Markup()
+    row_px, left = 22, 190
+    plot = Plot(language, 480, row_px * len(known) + 20, left=left, top=0)
+    x = fit_scale([], left, plot.right - 50, including=[0.0, known[0][value] or 1.0])
+    for place, row in enumerate(known):
+        y = row_px * (place + 0.5) + 6
+        plot.add_text(left - 6, y + 4, language.write(name, row[name]), "end")
+        bar = f"M{x(0):.1f} {y:.1f}H{x(row[value]):.1f}"
+        plot.add_path(bar, INKS[0], language.write(value, row[value]), {"stroke-width": 14})
+        plot.add_text(x(row[value]) + 5, y + 4, language.write(value, row[value]), size=11)
+    return plot.to_svg(caption)
+
+
+# -- Traces -----------------------------------------------------------------------------------
+
+
+def _plot_traces(language: Language, seconds: pl.DataFrame) -> tuple[Plot, Mapping[int, Scale]]:
+    """Return an empty plot of traces, and by run the scale of its seconds."""
+    runs = seconds.partition_by("run", as_dict=True, maintain_order=True)
+    plot = Plot(language, TRACE_WIDTH_PX, TRACE_HEIGHT_PX, top=TRACE_TOP_PX)
+    width = (plot.right - plot.left) / max(len(runs), 1)
+    scales = {}
+    for place, ((run,), own) in enumerate(runs.items()):
+        start = plot.left + place * width
+        last = float(own["second"].max() or 1)  # type: ignore[arg-type]
+        scales[int(run)] = Scale(0, last, start, start + width - TRACE_GAP_PX)
+    return plot, scales
+
+
+def _fit_trace_row(seconds: pl.DataFrame, plot: Plot, row: int) -> Scale:
+    """Return the scale of a row of traces."""
+    top = plot.top + row * TRACE_ROW_PX
+    values = [value for name, _ in TRACES[row][1] for value in seconds[name]]
+    return fit_scale(values, top + TRACE_ROW_PX - 22, top)
+
+
+def trace_lines(seconds: pl.DataFrame) -> Markup:
+    """Return the lines of the traces of a tow: a picture without words, for both languages.
+
+    Args:
+        seconds: rows of `trace_seconds` of a tow.
+    """
+    plot, scales = _plot_traces(Language("en"), seconds)
+    for row, (_, lines) in enumerate(TRACES):
+        y = _fit_trace_row(seconds, plot, row)
+        for run, x in scales.items():
+            own = seconds.filter(run=run)
+            for place, (name, dash) in enumerate(lines):
+                known = own.drop_nulls(name)
+                points = list(zip(map(x, known["second"]), map(y, known[name]), strict=True))
+                plot.add_line(points, INKS[place], parts=1, style={"stroke-dasharray": dash})
+    return plot.to_svg()
+
+
+def trace_frame(
+    language: Language,
+    seconds: pl.DataFrame,
+    windows: Sequence[tuple[str, pl.DataFrame]],
+    caption: str,
+) -> Markup:
+    """Return the axes about `trace_lines`, with grey over what does not count and the reason.
+
+    Args:
+        language: of what is written.
+        seconds: rows of `trace_seconds` of a tow.
+        windows: for each method, attributes by which it is chosen, and its rows of `run_points`.
+        caption: of the picture.
+    """
+    plot, scales = _plot_traces(language, seconds)
+    for row, (title, _) in enumerate(TRACES):
+        y = _fit_trace_row(seconds, plot, row)
+        plot.add_text(4, plot.top + row * TRACE_ROW_PX - 6, language.say(title))
+        for tick in y.ticks[:: 1 + len(y.ticks) // 5]:
+            number = language.write_number(tick, y.decimals)
+            plot.add_text(plot.left - 6, y(tick) + 4, number, "end", 10)
+    for run, x in scales.items():
+        plot.add_text(x.start, 12, f"{language.get_title('run')} {run}", size=11)
+    for attributes, points in windows:
+        plot.add_group(attributes, "".join(_draw_cuts(language, points, scales, plot)))
+    return plot.to_svg(caption)
+
+
+def _draw_cuts(
+    language: Language, points: pl.DataFrame, scales: Mapping[int, Scale], plot: Plot
+) -> list[str]:
+    """Return grey over the seconds of each run that do not count, with the reason above them."""
+    marks = []
+    height = len(TRACES) * TRACE_ROW_PX - 16
+    for row in points.to_dicts():
+        if row["run"] not in scales:
+            continue
+        x = scales[row["run"]]
+        start, end = row["window_start_s"], row["window_end_s"]
+        cuts = [(0, x.high)] if start is None or end is None else [(0, start), (end, x.high)]
+        for first, last in cuts:
+            width = max(x(last) - x(first), 0)
+            marks.append(
+                f'<rect x="{x(first):.1f}" y="{plot.top - 4}" width="{width:.1f}" '
+                f'height="{height}" fill="{GREY}" fill-opacity="0.3"/>'
+            )
+        why = language.write("reason", row["reason"] or row["cut_reason"])
+        marks.append(f'<text x="{x.start:.1f}" y="25" font-size="9">{escape(why)}</text>')
+    return marks
+
+
+def _write_tip(language: Language, row: Mapping[str, Any], *names: str) -> str:
+    """Return columns of a row with their titles, as pointing at its mark shows them."""
+    return ", ".join(f"{language.get_title(n)}: {language.write(n, row[n])}" for n in names)

@@ -1,0 +1,351 @@
+"""A document: a template filled with what a query found, in one language, as plain HTML.
+
+There is one template per subject. Its HTML is the page of the site; `terminal` and `paper` read it,
+so that what a document says is told once. Texts are English and marked by `_`, `say` or `mark`; a
+value is written as its column is everywhere.
+"""
+
+import json
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from typing import Any, Final, TypeAlias
+
+import polars as pl
+from markupsafe import Markup, escape
+
+from dashboards import charts, words
+from dashboards.addresses import boat_path, edition_page, race_path, trace_path, type_path
+from dashboards.language import Language, write_duration
+from dashboards.markdown import get_title, to_html
+from dashboards.templates import get_template
+from pipeline.messages import LANGUAGES, Sentence, format_probability, ngettext, pgettext
+from pipeline.method.options import find_basis
+from pipeline.method.writing import range_text
+from pipeline.tables.display import get_column
+
+WIDE_COLUMNS: Final = re.compile(
+    "reason|causes|message|decision|candidates|confused_with|remark|flags"
+)
+"""Columns of texts that may take several lines."""
+
+HASHES: Final = ("sha256", "method_hash", "content_hash", "seal")
+HASH_LENGTH: Final = 12
+"""Number of characters of a hash that a table shows."""
+
+UNIT_AFTER_NUMBER: Final = re.compile(r"(?<=\d) (?=(?:%|kg/m|m/s|kg|W|N|s)(?:\W|$))")
+
+Rows: TypeAlias = pl.DataFrame | Sequence[Mapping[str, Any]]
+
+_GLOBALS: Final = {
+    "boat_path": boat_path,
+    "type_path": type_path,
+    "race_path": race_path,
+    "edition_page": edition_page,
+    "pgettext": pgettext,
+    "ngettext": ngettext,
+    "mark": str,
+    "to_html": to_html,
+    "get_heading": get_title,
+    "write_duration": write_duration,
+    "write_chance": format_probability,
+    "find_basis": find_basis,
+    "write_range": range_text,
+    "SIMULATED": words.SIMULATED,
+    "FAILED_CHECKS": words.FAILED_CHECKS,
+    "to_json": json.dumps,
+    "vars": vars,
+}
+"""What every template can use besides the methods of its document and its language."""
+
+_OF_DOCUMENT: Final = ("say", "table", "draw", "draw_each", "draw_traces", "language", "root")
+_OF_LANGUAGE: Final = (
+    *("name_code", "name_method", "name_crew", "name_edition", "name_option", "name_choice"),
+    *("get_title", "get_unit", "write_seasons"),
+    *("write", "write_number", "write_percent", "write_change", "write_day", "write_plain"),
+)
+
+
+class Document:
+    """What a template can say, list, draw and choose.
+
+    Args:
+        language: of everything that is said.
+        root: the way from the page to the first page of its language.
+        chosen: what each selector of the page says at first. A selector without a choice shows
+            everything, with what it would choose by as a column of its own.
+        pictures: whether charts can be shown.
+    """
+
+    def __init__(
+        self,
+        language: Language,
+        root: str = "",
+        chosen: Mapping[str, str] | None = None,
+        *,
+        pictures: bool = True,
+    ) -> None:
+        self.language = language
+        self.root = root
+        self.chosen = dict(chosen or {})
+        self.pictures = pictures
+
+    def render(self, template: str, **data: Any) -> str:
+        """Return the document as HTML."""
+        return get_template(f"{template}.html.j2").render(self.get_names() | data)
+
+    def get_names(self) -> dict[str, Any]:
+        """Return what every template can use."""
+        of_document = {name: getattr(self, name) for name in _OF_DOCUMENT}
+        of_language = {name: getattr(self.language, name) for name in _OF_LANGUAGE}
+        chosen = {"_": self.text, "chosen": self.chosen}
+        return _GLOBALS | of_document | of_language | chosen
+
+    # -- Texts ------------------------------------------------------------------------------------
+
+    def text(self, text: str, row: Mapping[str, Any] | None = None, /, **values: Any) -> Markup:
+        """Return a text with values filled in, in which numbers and units stay on one line."""
+        filled = self.language.fill_in(text, row, **values)
+        return Markup(UNIT_AFTER_NUMBER.sub("\u00a0", filled))  # noqa: S704 - was escaped
+
+    def say(
+        self,
+        text: str,
+        row: Mapping[str, Any] | None = None,
+        /,
+        kind: str = "",
+        verdict: str = "",
+        **values: Any,
+    ) -> Markup:
+        """Return a statement: a paragraph that says of what kind it is, and the code of a verdict.
+
+        Args:
+            text: see `text`.
+            row: values by column.
+            kind: the code of what the statement is about.
+            verdict: the code of a verdict in it, as a query gives it.
+            values: go before those of the row.
+        """
+        said = self.text(text, row, **values)
+        return Markup('<p data-said="{}">{}</p>').format(f"{kind} {verdict}".strip(), said)
+
+    # -- What is chosen on the page ---------------------------------------------------------------
+
+    def show_when(self, values: Mapping[str, Sequence[str]]) -> Markup:
+        """Return attributes of a part that is shown where selectors say one of these values."""
+        attributes = [f' data-{name}="{escape("|".join(own))}"' for name, own in values.items()]
+        is_hidden = any(self._is_unchosen(name, own) for name, own in values.items())
+        return Markup("".join(attributes) + " hidden" * is_hidden)  # noqa: S704 - was escaped
+
+    def _is_unchosen(self, name: str, values: Sequence[str]) -> bool:
+        choice = self.chosen.get(name)
+        return bool(choice) and choice not in values
+
+    # -- Charts -----------------------------------------------------------------------------------
+
+    def draw(self, chart: str, *given: Any, **settings: Any) -> Markup:
+        """Return a chart of `charts` by the name of its function."""
+        if not self.pictures:
+            return Markup()
+        drawn: Markup = getattr(charts, chart)(self.language, *given, **settings)
+        return drawn
+
+    def draw_each(self, chart: str, rows: pl.DataFrame, follows: str, *given: Any) -> Markup:
+        """Return a chart for each choice of selectors; charts that look alike are there once.
+
+        Args:
+            chart: see `draw`.
+            rows: of all choices.
+            follows: columns that selectors choose by; charts are shared between values of the last.
+            given: what else the function takes.
+        """
+        if not self.pictures:
+            return Markup()
+        keys = follows.split()
+        shared: dict[tuple[Any, ...], list[str]] = {}
+        for key, own in rows.partition_by(keys, as_dict=True, maintain_order=True).items():
+            drawn = self.draw(chart, own, *given)
+            shared.setdefault((*key[:-1], drawn), []).append(str(key[-1]))
+        parts = []
+        for (*choices, drawn), last in shared.items():
+            values = {name: [str(one)] for name, one in zip(keys, choices, strict=False)}
+            when = self.show_when(values | {keys[-1]: last})
+            parts.append(Markup("<div{}>{}</div>").format(when, drawn))
+        return Markup("\n").join(parts)
+
+    def draw_traces(
+        self, seconds: pl.DataFrame, points: pl.DataFrame, caption: str, site_root: str
+    ) -> Markup:
+        """Return the traces of each tow, with what every method leaves out of them.
+
+        The lines are a picture of their own, which both languages share and a browser loads when it
+        is shown.
+
+        Args:
+            seconds: rows of `trace_seconds` of tows.
+            points: rows of `run_points` of the same.
+            caption: of the picture.
+            site_root: the way to the first page of the site.
+        """
+        if not self.pictures:
+            return Markup()
+        parts = []
+        for (tow_id,), own in seconds.partition_by(
+            "tow_id", as_dict=True, maintain_order=True
+        ).items():
+            windows = [
+                (self.show_when({"method": [str(method)]}), of_method)
+                for (method,), of_method in points.filter(tow_id=tow_id)
+                .partition_by("method", as_dict=True, maintain_order=True)
+                .items()
+            ]
+            frame = charts.trace_frame(self.language, own, windows, caption)
+            part = Markup('<div class="traces"{}><img loading="lazy" alt="" src="{}">{}</div>')
+            when = self.show_when({"tow_id": [str(tow_id)]})
+            parts.append(part.format(when, site_root + trace_path(str(tow_id)), frame))
+        return Markup("\n").join(parts)
+
+    # -- Tables -----------------------------------------------------------------------------------
+
+    def table(
+        self,
+        rows: Rows,
+        columns: str,
+        *,
+        follows: str = "",
+        search: bool = False,
+        cards: bool = False,
+        heads: Mapping[str, str] | None = None,
+    ) -> Markup:
+        """Return rows as a table; nothing where there are none.
+
+        Args:
+            rows: by the names of the columns of the tables.
+            columns: those shown, where they say something; what follows a bar is not on phones.
+            follows: columns that selectors choose by; rows are shared between values of the last.
+            search: whether the table has a search box.
+            cards: whether a phone shows each row as a card.
+            heads: other titles.
+        """
+        frame = rows if isinstance(rows, pl.DataFrame) else _to_frame(rows)
+        if frame.is_empty():
+            return Markup()
+        narrow = columns.partition("|")[0].split()
+        chosen_by = follows.split()
+        shown = [name for name in chosen_by if not self.chosen.get(name)]
+        wanted = [*shown, *columns.replace("|", " ").split()]
+        names = [name for name in dict.fromkeys(wanted) if _says_something(frame[name])]
+        titles = {name: get_column(name).title for name in names} | dict(heads or {})
+        head, cells = [], []
+        for name in names:
+            is_on_phones = "|" not in columns or name in narrow or name in shown
+            look = _choose_look(frame[name], is_on_phones)
+            title = self.language.say(titles[name])
+            head.append((look, title))
+            label = _attribute("data-label", _unbroken(title)) if cards and is_on_phones else ""
+            cells.append(self._write_cells(frame[name], look, label))
+        lines = map("".join, zip(*cells, strict=True))
+        made = get_template("table.html.j2").render(
+            heads=head,
+            lines=self._choose_rows(frame, chosen_by, lines),
+            search=search,
+            cards=cards,
+            _=self.text,
+        )
+        return Markup(made)  # noqa: S704 - of escaped parts
+
+    def _choose_rows(
+        self, frame: pl.DataFrame, follows: Sequence[str], lines: Iterable[str]
+    ) -> list[str]:
+        """Return rows with what they are chosen by; one that several methods share is there once.
+
+        A row whose choice is shown in a column of its own is shared with no other.
+        """
+        if not follows:
+            return [f"<tr>{line}</tr>" for line in lines]
+        shared: dict[tuple[Any, ...], list[str]] = {}
+        for *key, line in zip(*(frame[name] for name in follows), lines, strict=True):
+            values = shared.setdefault((*map(str, key[:-1]), line), [])
+            if str(key[-1]) not in values:
+                values.append(str(key[-1]))
+        rows = []
+        for (*choices, line), last in shared.items():
+            when = {name: [one] for name, one in zip(follows, choices, strict=False)}
+            rows.append(f"<tr{self.show_when(when | {follows[-1]: last})}>{line}</tr>")
+        return rows
+
+    def _write_cells(self, cells: pl.Series, look: str, label: str) -> list[str]:
+        """Return the cells of a column; `look` is their class, `label` an attribute."""
+        attributes = (f" class={look}" if look else "") + label
+        known: dict[str, Markup] = {}  # the same text comes often
+
+        def write(value: Any) -> Markup:
+            if not isinstance(value, str):
+                return self._write_cell(cells.name, value)
+            if value not in known:
+                known[value] = self._write_cell(cells.name, value)
+            return known[value]
+
+        return [f"<td{attributes}>{write(value)}</td>" for value in cells.to_list()]
+
+    def _write_cell(self, name: str, value: Any) -> Markup:
+        if isinstance(value, Markup):
+            return value
+        page = self._find_page(name, value)
+        if page:
+            return Markup('<a href="{}">{}</a>').format(self.root + page, value)
+        if name == "messages":  # in Dutch and in English
+            return escape(value[LANGUAGES.index(self.language.tag)])
+        if name in HASHES:
+            return escape((value or "")[:HASH_LENGTH])
+        if name == "boat_type":
+            return escape(self.language.name_code(value or ""))
+        return escape(self.language.write(name, value))
+
+    def _find_page(self, name: str, value: Any) -> str:
+        """Return the page about the value of a column; empty where there is none."""
+        if name == "fsn_no" and value:
+            return boat_path(value)
+        if name == "boat_type" and value not in (None, "", "unknown", "all"):
+            return type_path(value)
+        return ""
+
+
+def _to_frame(rows: Sequence[Mapping[str, Any]]) -> pl.DataFrame:
+    """Return rows as a frame; a value that is HTML or a sentence stays what it is."""
+    if not rows:
+        return pl.DataFrame()
+    names = dict.fromkeys(name for row in rows for name in row)
+    series = []
+    for name in names:
+        values = [row.get(name) for row in rows]
+        is_text = any(isinstance(value, Markup | Sentence) for value in values)
+        dtype = pl.Object if is_text or any(isinstance(v, dict) for v in values) else None
+        series.append(pl.Series(name, values, dtype=dtype, strict=False))
+    return pl.DataFrame(series)
+
+
+def _choose_look(cells: pl.Series, is_on_phones: bool) -> str:
+    """Return the class of cells: `t` a text, `w` a text of several lines, `p` not on phones."""
+    is_number = cells.dtype.is_numeric() and cells.name != "direction"
+    own = "" if is_number else "w" if WIDE_COLUMNS.search(cells.name) else "t"
+    if is_on_phones:
+        return own
+    return f'"{own} p"' if own else "p"
+
+
+def _says_something(cells: pl.Series) -> bool:
+    """Return whether a column holds anything but nothing, no, and empty texts and lists."""
+    return any(
+        value is not None and value is not False and value not in ("", [])
+        for value in cells.to_list()
+    )
+
+
+def _unbroken(title: str) -> str:
+    return title.replace("\u00ad", "").replace("\u200b", "")
+
+
+@cache
+def _attribute(name: str, value: str) -> str:
+    return f' {name}="{escape(value)}"'

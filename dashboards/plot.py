@@ -1,0 +1,285 @@
+"""A drawing area with axes and marks, as SVG: the same on a page, in print and in a PDF.
+
+There is no script in it. Colours are those of Okabe and Ito, which colour-blind people tell apart;
+a shape or dash says the same in print. Pointing at a mark shows its numbers.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import ceil, floor, log10
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+from markupsafe import Markup, escape
+
+from dashboards.language import Language
+
+INKS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+"""Colour of each kind of mark, by its number."""
+
+SHAPES: Final = (
+    "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0z",  # circle
+    "M-3.6 -3.6h7.2v7.2h-7.2z",  # square
+    "M0 -4.8L4.6 3.4H-4.6z",  # triangle
+    "M0 -5.2L4.4 0L0 5.2L-4.4 0z",  # diamond
+    "M-1.6 -4.6h3.2v3h3v3.2h-3v3h-3.2v-3h-3v-3.2h3z",  # cross
+    "M0 4.8L4.6 -3.4H-4.6z",  # triangle upside down
+)
+"""Path of each kind of mark, in pixels about its place."""
+
+GREY: Final = "#888888"
+CHARACTER_WIDTH_PX: Final = 6.6
+"""About the width of a letter of a label."""
+
+BULK_QUARTILES: Final = 2.0
+"""Interquartile ranges beyond the quartiles that an axis for the bulk of the numbers reaches, so
+that one boat does not squeeze all others."""
+
+TICKS: Final = 5
+"""About as many ticks as an axis has."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A way from numbers to pixels: `low` is drawn at `start`, `high` at `end`."""
+
+    low: float
+    high: float
+    start: float
+    end: float
+
+    def __call__(self, value: float) -> float:
+        """Return the place of a number [px]; one beyond the scale lies at its end."""
+        inside = min(max(value, self.low), self.high)
+        return self.start + (inside - self.low) / (self.high - self.low) * (self.end - self.start)
+
+    @property
+    def step(self) -> float:
+        """The distance of ticks: 1, 2 or 5 times a power of ten."""
+        rough = (self.high - self.low) / TICKS
+        power = 10.0 ** floor(log10(rough))
+        for factor in (1, 2, 5):
+            if factor * power >= rough:
+                return factor * power
+        return 10 * power
+
+    @property
+    def ticks(self) -> list[float]:
+        """Round numbers along the scale."""
+        first, last = ceil(self.low / self.step), floor(self.high / self.step)
+        return [place * self.step for place in range(first, last + 1)]
+
+    @property
+    def decimals(self) -> int:
+        """The decimals that tell ticks apart."""
+        return max(0, -floor(log10(self.step)))
+
+
+def fit_scale(
+    values: Iterable[float | None],
+    start: float,
+    end: float,
+    *,
+    including: Sequence[float] = (),
+    bulk: bool = False,
+) -> Scale:
+    """Return a scale that holds numbers, with some room beyond them.
+
+    Args:
+        values: the numbers; None is left out.
+        start: where the scale begins [px].
+        end: where it ends [px].
+        including: numbers that it holds in any case.
+        bulk: hold the bulk of the numbers only, as `BULK_QUARTILES` says.
+    """
+    known = np.array([value for value in values if value is not None] + list(including), float)
+    if not known.size:
+        known = np.array([0.0, 1.0])
+    low, high = known.min(), known.max()
+    if bulk:
+        lower, upper = np.quantile(known, (0.25, 0.75))
+        reach = BULK_QUARTILES * (upper - lower or np.inf)
+        low = min(max(low, lower - reach), *including, np.inf)
+        high = max(min(high, upper + reach), *including, -np.inf)
+    room = 0.05 * (high - low) or 0.05 * abs(high) or 1.0
+    return Scale(float(low - room), float(high + room), start, end)
+
+
+LEGEND_ROW_PX: Final = 18
+NO_STYLE: Final[Mapping[str, str | float | None]] = MappingProxyType({})
+
+
+def _place_legend(names: Mapping[int, str], width: float) -> list[tuple[str, float, int]]:
+    """Return each name with its place [px] on a row of the legend, and the row."""
+    placed = []
+    x, row = 0.0, 0
+    for name in names.values():
+        name_width = CHARACTER_WIDTH_PX * len(name) + 30
+        if x and x + name_width > width - 40:
+            x, row = 0.0, row + 1
+        placed.append((name, x, row))
+        x += name_width
+    return placed
+
+
+class Plot:
+    """An area with two axes, and marks in the order in which they are added.
+
+    Args:
+        language: of the numbers on the axes.
+        width, height: of the whole picture [px].
+        left, top: room for labels [px].
+        legend: names of the marks, if several rows of them are to have room.
+    """
+
+    def __init__(
+        self,
+        language: Language,
+        width: int = 480,
+        height: int = 300,
+        left: int = 52,
+        top: int = 44,
+        legend: Mapping[int, str] | None = None,
+    ) -> None:
+        placed = _place_legend(legend or {}, width - 10)
+        extra = LEGEND_ROW_PX * max((row for _, _, row in placed), default=0)
+        height += extra
+        self.language = language
+        self.width, self.height = width, height
+        self.left, self.top = left, top + extra
+        self.right, self.bottom = width - 10, height - 40
+        self._marks: list[str] = []
+
+    def fit_x(
+        self,
+        values: Iterable[float | None],
+        *,
+        including: Sequence[float] = (),
+        bulk: bool = False,
+    ) -> Scale:
+        """Return a scale along the bottom; see `fit_scale`."""
+        return fit_scale(values, self.left, self.right, including=including, bulk=bulk)
+
+    def fit_y(
+        self,
+        values: Iterable[float | None],
+        *,
+        including: Sequence[float] = (),
+        bulk: bool = False,
+    ) -> Scale:
+        """Return a scale along the side; see `fit_scale`."""
+        return fit_scale(values, self.bottom, self.top, including=including, bulk=bulk)
+
+    def add_path(
+        self,
+        path: str,
+        ink: str = "currentColor",
+        tip: str = "",
+        style: Mapping[str, str | float | None] = NO_STYLE,
+    ) -> None:
+        """Add a shape or line; attributes without a value are left out.
+
+        Args:
+            path: in the language of SVG.
+            ink: colour of its stroke.
+            tip: what pointing at it shows.
+            style: attributes of SVG.
+        """
+        looks = {"fill": "none", "stroke": ink} | dict(style)
+        written = [f' {name}="{value}"' for name, value in looks.items() if value is not None]
+        title = f"<title>{escape(tip)}</title>" if tip else ""
+        self._marks.append(f'<path d="{path}"{"".join(written)}>{title}</path>')
+
+    def add_text(
+        self, x: float, y: float, text: str, anchor: str = "start", size: int = 12
+    ) -> None:
+        """Add a text at a place; `anchor` is which of its ends lies there."""
+        self._marks.append(
+            f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" font-size="{size}">'
+            f"{escape(text)}</text>"
+        )
+
+    def add_axes(self, x: Scale | None, y: Scale, x_title: str, y_title: str) -> None:
+        """Add lines, ticks, numbers and titles; the title of the side stands above it."""
+        write = self.language.write_number
+        for tick in y.ticks:
+            self.add_path(
+                f"M{self.left} {y(tick):.1f}H{self.right}", GREY, style={"stroke-opacity": 0.25}
+            )
+            self.add_text(self.left - 6, y(tick) + 4, write(tick, y.decimals), "end")
+        for tick in x.ticks if x else ():
+            self.add_path(f"M{x(tick):.1f} {self.bottom}v4")  # type: ignore[misc]
+            label = write(tick, x.decimals)  # type: ignore[union-attr]
+            self.add_text(x(tick), self.bottom + 17, label, "middle")  # type: ignore[misc]
+        self.add_path(f"M{self.left} {self.bottom}H{self.right}")
+        self.add_text(4, self.top - 12, y_title)
+        self.add_text((self.left + self.right) / 2, self.height - 6, x_title, "middle")
+
+    def add_point(
+        self, x: float, y: float, kind: int, tip: str = "", *, filled: bool = True, page: str = ""
+    ) -> None:
+        """Add a mark of a kind; one that does not count is open, one with a page leads to it."""
+        ink = INKS[kind % len(INKS)]
+        fill, shape = ink if filled else "none", SHAPES[kind % len(SHAPES)]
+        mark = (
+            f'<path d="{shape}" transform="translate({x:.1f} {y:.1f})" fill="{fill}" '
+            f'stroke="{ink}"><title>{escape(tip)}</title></path>'
+        )
+        self._marks.append(f'<a href="{escape(page)}">{mark}</a>' if page else mark)
+
+    def add_interval(
+        self, x: float, low: float, high: float, kind: int, *, dashed: bool = False
+    ) -> None:
+        """Add a bar from low to high [px]; one that leaves out a part of it is dashed."""
+        self.add_path(
+            f"M{x:.1f} {low:.1f}V{high:.1f}",
+            INKS[kind % len(INKS)],
+            style={"stroke-width": 2, "stroke-dasharray": "3 3" if dashed else None},
+        )
+
+    def add_line(
+        self,
+        points: Sequence[tuple[float, float]],
+        ink: str,
+        *,
+        parts: int = 10,
+        style: Mapping[str, str | float | None] = NO_STYLE,
+    ) -> None:
+        """Add a line through points [px], each to so many parts of a pixel."""
+        whole = [(round(parts * x), round(parts * y)) for x, y in points]
+        if len(whole) < 2:
+            return
+        moves = " ".join(
+            f"{(x - before_x) / parts:g} {(y - before_y) / parts:g}"
+            for (before_x, before_y), (x, y) in pairwise(whole)
+        )
+        x, y = whole[0]
+        self.add_path(f"M{x / parts:g} {y / parts:g}l{moves}", ink, style=style)
+
+    def add_band(self, x: Sequence[float], low: Sequence[float], high: Sequence[float]) -> None:
+        """Add the area between two lines."""
+        above = list(zip(x, low, strict=True))
+        below = list(zip(reversed(x), reversed(high), strict=True))
+        self.add_line([*above, *below], "none", style={"fill": GREY, "fill-opacity": 0.22})
+
+    def add_group(self, attributes: str, marks: str) -> None:
+        """Add marks, as SVG, that are shown together."""
+        self._marks.append(f"<g{attributes}>{marks}</g>")
+
+    def add_legend(self, names: Mapping[int, str]) -> None:
+        """Add what each kind of mark is, on lines of their own at the top."""
+        for kind, (name, x, row) in zip(names, _place_legend(names, self.right), strict=True):
+            y = LEGEND_ROW_PX * row
+            self.add_point(self.left + x, y + 10, kind)
+            self.add_text(self.left + x + 8, y + 14, name)
+
+    def to_svg(self, caption: str = "") -> Markup:
+        """Return the picture; a screen reader says its caption, and skips one without."""
+        label = f'role="img" aria-label="{escape(caption)}"' if caption else 'aria-hidden="true"'
+        return Markup(  # noqa: S704 - texts were escaped
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
+            f'{label} fill="currentColor" font-family="Open Sans, sans-serif">'
+            f"{''.join(self._marks)}</svg>"
+        )

@@ -1,0 +1,247 @@
+"""A boat: the answer about each of its crews, and how every tow came to its number."""
+
+import json
+from collections.abc import Sequence
+from itertools import accumulate
+from math import prod
+from operator import mul
+from typing import Any, Final
+
+import polars as pl
+
+from dashboards.queries.results import Data, Results
+from pipeline.tables.display import STEP_CHANGE
+from pipeline.tables.row import Row
+from warehouse.queries.answers import answers, season_faults, select_own_races
+from warehouse.queries.views import DRAFT, curve_figure
+
+NEGLIGIBLE_CHANGE: Final = 5e-4
+"""A cause that changes Cw by a smaller share is shown as 0.0 %; such causes are summed as one."""
+
+BAR_MARGIN: Final = 0.25
+"""Room on either side of the bars of a change, as a share of their range."""
+
+CREW: Final = ("fsn_no", "rowers", "crew_class")
+
+_SET_ASIDE: Final = r"""
+SELECT * FROM quarantine
+WHERE regexp_matches(message, '\b' || regexp_escape(?) || '\b')
+   OR starts_with(lower(parse_filename(path)), lower(?) || ' ')
+ORDER BY path, line
+"""
+
+
+def read_boat(
+    results: Results,
+    fsn_no: str,
+    *,
+    edition: str | None = None,
+    methods: Sequence[str] | None = None,
+    tow_id: str | None = None,
+) -> Data:
+    """Return what the page of a boat and `herijk audit BOAT` say.
+
+    Args:
+        results: the tables.
+        fsn_no: the number of the boat.
+        edition: the edition or draft that the answers are about; the one that counts when left out.
+        methods: methods whose results are shown; those of `Results.compared_methods` when left out.
+        tow_id: the tow that is shown first; the newest when left out.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition.
+    """
+    shown = list(methods or results.compared_methods)
+    chosen_edition = results.choose_edition(edition)
+
+    def own(source: str) -> pl.DataFrame:
+        rows = results.of_boat(source, fsn_no)
+        is_per_method = "method" in rows.columns
+        return rows.filter(pl.col("method").is_in(shown)) if is_per_method else rows
+
+    boat = results.of_boat("boats", fsn_no).row(0, named=True)
+    curves = own("curves").with_columns(
+        tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
+    )
+    runs = own("run_points").sort("tow_id", "run", maintain_order=True)
+    figure = curve_figure(own("curve_points"), runs, curves)
+    tows = dict(curves.select("tow_id", "tow").rows())
+    crews = read_answers(results, chosen_edition).get(fsn_no, []) if tows else []
+    size = pl.col("cw_effect_ratio").log().abs()
+    budget = own("uncertainty_budget").filter(pl.col("u_ratio") > 0)
+    return {
+        "methods": [name for name in shown if name in curves["method"].unique()],
+        "boat": boat,
+        "answers": crews,
+        "edition": chosen_edition,
+        "register": _without_repeated_drafts(results.of_boat("register", fsn_no)),
+        "tows": results.of_boat("tows", fsn_no).sort("tow_date", "tow_id"),
+        "curves": curves,
+        "steps": _tabulate_steps(own_steps(results, fsn_no, shown)),
+        "runs": runs.with_columns(run_cw_kg_m="cw_kg_m"),
+        "budget": budget.sort("u_ratio", descending=True, maintain_order=True),
+        "in_type": own("compared_tows"),
+        "repeat_pairs": own("repeat_pairs").with_columns(cw_ratio=pl.col("ln_ratio").exp()),
+        "predicted": own("predicted_cw"),
+        "options": own("option_effects").sort(size, descending=True, maintain_order=True),
+        "checks": own("flagged"),
+        "hand_windows": results.of_boat("hand_windows", fsn_no),
+        "lineage": results.of_boat("lineage", fsn_no),
+        "set_aside": results.views.frame(_SET_ASIDE, fsn_no, boat["name"] or fsn_no).to_dicts(),
+        "drawn": {
+            "curve": pl.concat(figure.values(), how="diagonal_relaxed"),
+            "seconds": results.of_boat("trace_seconds", fsn_no),
+        },
+        "tow_names": tows,
+        "chosen": {"tow_id": tow_id or next(reversed(tows), ""), "method": _first(shown, results)},
+    }
+
+
+def _first(shown: Sequence[str], results: Results) -> str:
+    return results.method if results.method in shown else shown[-1]
+
+
+def own_steps(results: Results, fsn_no: str, methods: Sequence[str]) -> pl.DataFrame:
+    """Return the rows of `correction_steps` of a boat between these methods."""
+    is_shown = pl.col("from_method").is_in(methods) & pl.col("to_method").is_in(methods)
+    return results.of_boat("correction_steps", fsn_no).filter(is_shown)
+
+
+def _tabulate_steps(steps: pl.DataFrame) -> pl.DataFrame:
+    """Return a row per tow and pair of methods, with the factor of each step on Cw.
+
+    Returns:
+        `tow_id`, `from_method`, `to_method`, `total`, and per step the step with `STEP_CHANGE`.
+    """
+    key = ["tow_id", "from_method", "to_method"]
+    total = steps.group_by(key, maintain_order=True).agg(total=pl.col("factor").product())
+    factors = steps.filter(pl.col("position") > 0).with_columns(column=pl.col("step") + STEP_CHANGE)
+    if factors.is_empty():
+        return total.clear()
+    wide = factors.pivot("column", index=key, values="factor", aggregate_function="first")
+    return total.join(wide, on=key, how="left", maintain_order="left")
+
+
+def _without_repeated_drafts(register: pl.DataFrame) -> pl.DataFrame:
+    """Return lines of a boat without drafts that say what an edition of their method says."""
+    same = ["method", "fsn_no", "rowers", "crew_class", "tow_id", "cw_kg_m"]
+    is_draft = pl.col("edition").str.starts_with(DRAFT)
+    repeated = register.filter(is_draft).join(
+        register.filter(~is_draft), on=same, how="semi", nulls_equal=True
+    )
+    return register.join(repeated, on=["edition", *same], how="anti", nulls_equal=True)
+
+
+# -- Answers ----------------------------------------------------------------------------------
+
+
+def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
+    """Return what there is to say of each crew of a boat in an edition, by boat.
+
+    Returns:
+        Rows of `warehouse.queries.answers.answers` with `races`, `faults`, `causes`, `bars` (see
+        `measure_bars`), `cw_verdict` (same, lower or higher) and `has_moved` since the tow before.
+    """
+    if edition in results.answers:
+        return results.answers[edition]
+    lines = answers(results.views, edition)
+    previous = next(iter(lines["from_edition"].drop_nulls()), None)
+    races = select_own_races(results.views, previous, edition)
+    races_by_crew = races.partition_by(CREW, as_dict=True, maintain_order=True)
+    # An edition holds no faults of instruments.
+    faults = season_faults(results.views) if edition.startswith(DRAFT) else {}
+    by_boat: dict[str, list[Row]] = {}
+    for line in lines.to_dicts():
+        own = races_by_crew.get(tuple(line[name] for name in CREW), races.head(0)).to_dicts()
+        of_season = faults.get((line["method"], line["season"]), [])
+        by_boat.setdefault(line["fsn_no"], []).append(describe_answer(line, own, of_season))
+    results.answers[edition] = by_boat
+    return by_boat
+
+
+def describe_answer(line: Row, races: Sequence[Row], faults: Sequence[Row]) -> Row:
+    """Return a line with all that its answer needs; see `read_answers`.
+
+    Args:
+        line: a row of `warehouse.queries.answers.answers`.
+        races: rows of `select_own_races` of its boat and crew.
+        faults: rows of `season_diagnosis` of its season that a person should look at.
+    """
+    return line | {
+        "races": list(races),
+        "faults": [fault | {"largest": _get_largest_size(fault)} for fault in faults],
+        "causes": list_causes(line),
+        "bars": measure_bars(line),
+        "cw_verdict": _compare_numbers(line),
+        "has_moved": _has_moved(line),
+    }
+
+
+def _get_largest_size(fault: Row) -> float | None:
+    """Return the size of a fault; of one that a single boat shows, the largest it may have."""
+    if fault["shown_by"] is None:
+        size: float | None = fault["size"]
+        return size
+    return float(max(fault["size_lo"], fault["size_hi"], key=abs))
+
+
+def _compare_numbers(line: Row) -> str:
+    """Return whether the number shown is the `same` as the old one, `lower` or `higher`."""
+    if line["cw_kg_m"] is None or line["cw_ratio"] is None:
+        return ""
+    ratio = line["cw_kg_m"] / line["old_cw_kg_m"]  # of the two shown, each at its own speed
+    if abs(ratio - 1) <= NEGLIGIBLE_CHANGE:
+        return "same"
+    return "lower" if ratio < 1 else "higher"
+
+
+def _has_moved(line: Row) -> bool:
+    """Return whether Cw differs from that of the tow before, of the same unaltered boat."""
+    if line["best_moved_ratio"] is None:
+        return False
+    return bool(abs(line["moved_ratio"] - 1) >= NEGLIGIBLE_CHANGE)
+
+
+def list_causes(line: Row) -> list[Row]:
+    """Return what made a line change, the largest first; small causes as one, called `rest`.
+
+    Args:
+        line: with `causes`, a list of rows or its JSON; None where it is not compared.
+    """
+    stored = line["causes"] or []
+    causes = json.loads(stored) if isinstance(stored, str) else stored
+    large = [one for one in causes if abs(one["factor"] - 1) >= NEGLIGIBLE_CHANGE]
+    rest = prod(one["factor"] for one in causes if one not in large)
+    large.sort(key=lambda one: -abs(one["factor"] - 1))
+    if abs(rest - 1) >= NEGLIGIBLE_CHANGE:
+        large.append({"cause": "rest", "factor": rest})
+    return large
+
+
+def measure_bars(line: Row) -> list[Row]:
+    """Return the way from the old number to the new as marks and bars; nothing without a change.
+
+    The axis need not begin at zero: both numbers are marks on it, and only changes have a length.
+
+    Returns:
+        The first and the last with `cw_kg_m`, between them the causes with their `factor`; all with
+        `start`, causes also with `width`, in per cent of the axis.
+    """
+    if line["cw_ratio"] is None or line["change"] == "same":
+        return []
+    old_cw, new_cw = line["old_cw_kg_m"], line["old_cw_kg_m"] * line["cw_ratio"]
+    causes = list_causes(line)
+    ends = list(accumulate((one["factor"] for one in causes), mul, initial=old_cw))
+    lowest, highest = min(ends), max(ends)
+    margin = BAR_MARGIN * (highest - lowest) or 0.01 * old_cw
+    whole = highest - lowest + 2 * margin
+
+    def place(cw: float) -> float:
+        return float(100 * (cw - lowest + margin) / whole)
+
+    bars: list[dict[str, Any]] = [{"cw_kg_m": old_cw, "start": place(old_cw)}]
+    for cause, before, after in zip(causes, ends, ends[1:], strict=False):
+        start, end = sorted((place(before), place(after)))
+        bars.append(cause | {"start": start, "width": end - start})
+    bars.append({"cw_kg_m": new_cw, "start": place(new_cw)})
+    return bars

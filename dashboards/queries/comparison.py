@@ -1,0 +1,94 @@
+"""Two editions, drafts or methods side by side: `herijk compare`."""
+
+import datetime as dt
+import json
+
+import polars as pl
+
+from dashboards.queries.pages import pick_cause, sum_up_changes
+from dashboards.queries.results import Data
+from pipeline.method.variant import differences
+from pipeline.register.register import draft_name
+from pipeline.register.replay import RaceRules
+from pipeline.tables.row import Row
+from warehouse.editions.compare import DiffReport, report_with_races
+from warehouse.editions.publish import drafted
+from warehouse.store.editions import Edition, edition_names, read_edition
+from warehouse.store.methods import KnownMethods
+from warehouse.store.store import Store
+
+
+def compare(
+    store: Store, old: str, new: str, rules: RaceRules, as_of: dt.date | None = None
+) -> Data:
+    """Compare editions as they are, and drafts, methods and method files as their drafts are.
+
+    Two drafts are compared over all of history: also lines whose tow has expired; as of a day, the
+    lines that counted on it.
+
+    Returns:
+        `old`, `new`, the `options` that differ, and the `effect` on all boats: a `DiffReport`, None
+        where a draft is to be made and the data folder has no tows. Where there is one, also what
+        is read from it.
+
+    Raises:
+        HerijkError: there is no such method or edition, or it cannot be computed.
+    """
+    known, published = KnownMethods.of(store), edition_names(store)
+    sides = [
+        read_edition(store, name)
+        if name in published
+        else known.named(name.removeprefix(draft_name("")))
+        for name in (old, new)
+    ]
+    before, after = (side.method if isinstance(side, Edition) else side for side in sides)
+    options = [] if before is None or after is None else list(differences(after, before))
+    data: Data = {"old": old, "new": new, "options": options, "effect": None}
+    if not {old, new} <= {*published} and store.made_from("tows") is None:
+        return data
+    is_of_a_day = as_of is not None or {old, new} & {*published}
+    counting = ("valid",) if is_of_a_day else ("valid", "expired")
+    first, second = (
+        side if isinstance(side, Edition) else drafted(store, side, as_of, counting)
+        for side in sides
+    )
+    effect = report_with_races(store, first, second, rules)
+    return data | {"effect": effect, "simulated": effect.simulated} | _sum_up(effect)
+
+
+def _sum_up(effect: DiffReport) -> Data:
+    """Return what the document says of a comparison."""
+    ranked = [race for race in effect.races or () if race["new_rank"] is not None]
+    moved = [race for race in ranked if race["old_rank"] != race["new_rank"]]
+    return {
+        "changed": sum_up_changes(_list_lines(effect)),
+        "lines": [_describe_line(row) for row in effect.rows],
+        "causes": [one | {"main_cause": pick_cause(one)} for one in effect.causes],
+        "n_ranked": len(ranked),
+        "moved": moved,
+        "n_podium": sum(race["podium_changed"] for race in ranked),
+    }
+
+
+def _list_lines(effect: DiffReport) -> pl.DataFrame:
+    """Return the lines as `sum_up_changes` reads them."""
+    log_known = {
+        f"{side}_log_known": pl.lit(edition not in effect.runs_alone)
+        for side, edition in (("old", effect.from_edition), ("new", effect.to_edition))
+    }
+    names = ("from_edition", "to_edition", "change", "exceeds_interval")
+    rows = [
+        {name: row[name] for name in names} | {"causes": json.dumps(row["causes"])}
+        for row in effect.rows
+    ]
+    schema = dict.fromkeys((*names[:3], "causes"), pl.String) | {"exceeds_interval": pl.Boolean}
+    return pl.DataFrame(rows, schema=schema).with_columns(**log_known)
+
+
+def _describe_line(row: Row) -> Row:
+    """Return a line whose change says why it was removed, with ranks named after speed."""
+    codes = [row["change"]]
+    if row["change"] == "removed":
+        codes.append(row["new_status"] or "gone")
+    ranks = {f"{side}_speed_rank": row[f"{side}_rank"] for side in ("old", "new")}
+    return row | ranks | {"change": codes}

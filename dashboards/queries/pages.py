@@ -1,0 +1,412 @@
+"""The pages about all boats: start, register, due list, years, seasons, changes, races, quality."""
+
+import datetime as dt
+from collections import Counter
+from typing import Final
+
+import polars as pl
+
+from dashboards.guides import guide_file
+from dashboards.queries.boats import list_causes
+from dashboards.queries.results import Data, Results
+from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import LANGUAGES
+from pipeline.races.race import FATIGUE_REFERENCE
+from pipeline.studies.ladder import START
+from pipeline.tables.display import STEP_FACTOR
+from pipeline.tables.keys import SEASON_LEVEL
+from pipeline.tables.row import Row
+from warehouse.derive.studies import JUDGEMENT
+from warehouse.editions.compare import causes_of
+from warehouse.queries.answers import race_chances
+from warehouse.queries.change_report import last_changes
+from warehouse.queries.years import summarise_years
+from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_path
+
+MONTHS_AHEAD: Final = dt.timedelta(days=365)
+"""How far the due list looks ahead."""
+
+SHEETS: Final = (CSV, XLSX)
+"""Files of an edition that the site offers."""
+
+SOUND_VERDICTS: Final = ("sound", "estimated")
+"""Verdicts on an instrument that need no look."""
+
+
+# -- Start ------------------------------------------------------------------------------------
+
+
+def read_start(results: Results) -> Data:
+    """Return where things stand: the edition that counts, what it changes, and the seasons."""
+    views, season = results.views, pl.col("season")
+    editions = views.table("editions").sort("valid_from")
+    seasons = views.table("seasons").select(first=season.min(), last=season.max())
+    return {
+        "in_force": editions.row(-1, named=True) if editions.height else None,
+        "as_of": views.table("due_list")["as_of"].max(),
+        "n_boats": views.table("boats").height,
+        "n_tows": views.table("tows").height,
+        "seasons": seasons.row(0, named=True),
+        "changed": sum_up_changes(results.line_changes.filter(to_edition=results.edition)),
+        "rebuilt": last_changes(views.store),
+        **read_season_changes(results),
+    }
+
+
+def sum_up_changes(lines: pl.DataFrame) -> Data:
+    """Return how many lines an edition changes, by more than their uncertainty, and mostly why.
+
+    Args:
+        lines: rows of `warehouse.queries.answers.line_changes` of two editions.
+
+    Returns:
+        `old` and `new`, the editions; numbers of `lines`, `changed`, `compared` with their
+        uncertainty and `beyond` it; `cause`, what most lines change by most, with its `cause` and
+        `step`, and `cause_known`; `log_unknown`, the editions whose uncertainty leaves out the
+        error of the log.
+    """
+    changed = lines.filter(change="changed")
+    compared = changed.drop_nulls("exceeds_interval")
+    main_causes = Counter(
+        (largest["cause"], largest.get("step"))
+        for line in changed.to_dicts()
+        for largest in list_causes(line)[:1]
+    )
+    main = main_causes.most_common(1)
+    log_unknown = [
+        compared[f"{end}_edition"][0]
+        for side, end in (("old", "from"), ("new", "to"))
+        if compared.height and not compared[f"{side}_log_known"].fill_null(value=False).all()
+    ]
+    return {
+        "old": lines["from_edition"].first(),
+        "new": lines["to_edition"].first(),
+        "lines": lines.height,
+        "changed": changed.height,
+        "compared": compared.height,
+        "beyond": int(compared["exceeds_interval"].sum() or 0),
+        "cause": {"cause": main[0][0][0], "step": main[0][0][1]} if main else None,
+        "cause_known": bool(main) and main[0][0][0] != "printed",
+        "log_unknown": log_unknown,
+    }
+
+
+def read_season_changes(results: Results) -> Data:
+    """Return what each method makes of each season, and where the one shown first changes most."""
+    changes = results.rows("season_changes")
+    own = changes.filter(method=results.method).drop_nulls("median_ratio")
+    size = pl.col("median_ratio").log().abs()
+    by_size = own.sort(size, "season", descending=[True, False])
+    most_changed = by_size.row(0, named=True) if by_size.height else None
+    return {"season_changes": changes, "most_changed": most_changed}
+
+
+# -- Registers --------------------------------------------------------------------------------
+
+
+def read_register(results: Results, edition: str | None = None) -> Data:
+    """Return the lines of all editions and drafts; those of one are shown first.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition.
+    """
+    chosen = results.choose_edition(edition)
+    own = results.register.filter(edition=chosen)
+    return {
+        "edition": chosen,
+        "as_of": own["as_of"].max(),
+        "n_lines": own.height,
+        "n_known": own["cw_kg_m"].count(),
+        "lines": results.register,
+        "names": results.register["edition"].unique().sort().to_list(),
+        "editions": results.views.table("editions"),
+        "chosen": {"edition": chosen},
+    }
+
+
+URGENCIES: Final = ("expired", "this_year", "without_curve", "later")
+"""In this order the due list of a terminal names crews."""
+
+
+def read_due_list(results: Results, method: str | None = None) -> Data:
+    """Return who has to tow again and when, and at what speed.
+
+    Args:
+        results: the tables.
+        method: whose curves give the speeds; the one shown first when left out.
+
+    Raises:
+        MissingKnowledgeError: the method was not applied by the last rebuild.
+    """
+    chosen = method or results.method
+    lines = results.views.ask("due_list").filter(method=chosen)
+    if lines.is_empty():
+        raise MissingKnowledgeError(
+            "there is no due list of method {}; make it with: herijk rebuild "
+            "--archive DIR --data {} --method {}",
+            chosen,
+            results.views.store.root,
+            chosen,
+        )
+    until, as_of = pl.col("valid_until"), lines["as_of"][0]
+    urgency = (
+        pl.when(until.is_null())
+        .then(pl.lit("without_curve"))
+        .when(pl.col("status") == "expired")
+        .then(pl.lit("expired"))
+        .when(until.dt.year() == as_of.year)
+        .then(pl.lit("this_year"))
+        .otherwise(pl.lit("later"))
+    )
+    return {
+        "method": chosen,
+        "as_of": as_of,
+        "lines": lines.with_columns(urgency=urgency),
+        "n_soon": lines.filter(until.is_between(as_of, as_of + MONTHS_AHEAD)).height,
+        "n_over": lines.filter(until < as_of).height,
+        "urgencies": URGENCIES,
+    }
+
+
+def read_years(results: Results, method: str | None = None) -> Data:
+    """Return the register of every past year, as published and as methods would have had it.
+
+    Args:
+        results: the tables.
+        method: the method that is shown first; that of `Results.method` when left out.
+
+    Raises:
+        MissingKnowledgeError: the method was not applied by the last rebuild.
+    """
+    views, chosen = results.views, method or results.method
+    is_shown = pl.col("method").is_in([*results.methods, chosen])
+    lines = views.ask("register_years").filter(is_shown)
+    if method is not None and lines.filter(method=method).is_empty():
+        raise MissingKnowledgeError("method {} was not applied by the last rebuild", method)
+    years = summarise_years(lines, views.store.read("printed_registers"))
+    own = years.filter(method=chosen)
+    size = pl.col("median_ratio").log().abs()
+    by_size = own.drop_nulls("median_ratio").sort(size, "year", descending=[True, False])
+    most_changed = by_size.row(0, named=True) if by_size.height else None
+    causes = [
+        {"year": year, "method": name, "main_cause": pick_cause(cause)} | cause
+        for (year, name), rows in lines.group_by("year", "method", maintain_order=True)
+        for cause in causes_of(rows.drop_nulls("cw_ratio"))
+    ]
+    return {
+        "method": chosen,
+        "most_changed": most_changed,
+        "years": years,
+        "causes": pl.DataFrame(causes, infer_schema_length=None),
+        "lines": lines,
+        "changed_lines": lines.filter(pl.col("change") != "same"),
+        "winners": views.ask("year_winners").filter(is_shown),
+        "methods": results.methods,
+        "names": [str(year) for year in years["year"].unique().sort()],
+        "chosen": {"method": chosen, "year": str(most_changed["year"] if most_changed else 0)},
+    }
+
+
+def pick_cause(found: Row) -> Row:
+    """Return what names a cause: its code and, where it is the method, the step."""
+    return {"cause": found["cause"], "step": found["step"]}
+
+
+# -- Seasons ----------------------------------------------------------------------------------
+
+
+def read_seasons(results: Results, method: str | None = None) -> Data:
+    """Return what was wrong with the instruments of each season, and how well tows repeat.
+
+    Args:
+        results: the tables.
+        method: the method that is shown first; that of `Results.method` when left out.
+    """
+    views, chosen = results.views, method or results.method
+    is_shown = pl.col("method").is_in([*results.methods, chosen])
+    factors = views.ask("log_factors").filter(is_shown)
+    own = factors.filter(method=chosen).drop_nulls("factor")
+    by_size = own.sort((pl.col("factor") - 1).abs(), descending=True)
+    known = factors.filter(method=chosen)["season"].unique().sort().to_list()
+    between = range(min(known, default=0), max(known, default=0))
+    part = pl.col("part") + 1  # as people count
+    parts = views.table("season_links").with_columns(part)
+    divided = parts.filter(method=chosen).filter(pl.col("part") > 1)
+    spread = with_named_ends(results.rows("reproducibility"))
+    diagnosis = views.ask("season_diagnosis")
+    is_level = pl.col("instrument") == SEASON_LEVEL
+    is_in_doubt = ~pl.col("verdict").is_in(SOUND_VERDICTS)
+    is_usual_level = is_level & (pl.col("verdict") != "alarm")
+    eras = results.rows("era_shifts").filter(boat_type="all").drop_nulls("shift_ratio")
+    return {
+        "method": chosen,
+        "factors": factors,
+        "furthest": by_size.row(0, named=True) if by_size.height else None,
+        "lacking": [year for year in between if year not in known],
+        "links": parts,
+        "parts": parts.filter(pl.col("season").is_in(divided["season"].implode())),
+        "diagnosis": diagnosis.filter(is_in_doubt & ~is_usual_level).with_columns(part),
+        "levels": diagnosis.filter(is_level),
+        "spread": spread.filter(pl.col("scope") != "all"),
+        **sum_up_repeats(spread, chosen),
+        "repeat_pairs": results.views.ask("repeat_pairs").filter(is_shown),
+        "ladder": _tabulate_ladder(
+            views.table("season_ladder").filter(pl.col("to_method").is_in(results.methods))
+        ),
+        "options": views.table("option_summary").filter(study=JUDGEMENT),
+        "eras": eras,
+        "methods": results.methods,
+        "chosen": {"method": chosen},
+        **read_season_changes(results),
+    }
+
+
+def with_named_ends(spread: pl.DataFrame) -> pl.DataFrame:
+    """Return rows of `reproducibility` whose interval says of what it is: of `sd_ratio`."""
+    return spread.rename({"lo": "sd_lo_ratio", "hi": "sd_hi_ratio"})
+
+
+def sum_up_repeats(spread: pl.DataFrame, method: str) -> Data:
+    """Return how well tows repeat over all seasons, under the first method and under another.
+
+    Args:
+        spread: rows of `with_named_ends`.
+        method: the other.
+    """
+    overall = spread.filter(scope="all").drop_nulls("sd_ratio")
+    by_method = {row["method"]: row for row in overall.to_dicts()}
+    return {
+        "repeats_first": next(iter(by_method.values()), None),
+        "repeats_now": by_method.get(method),
+    }
+
+
+def _tabulate_ladder(ladder: pl.DataFrame) -> pl.DataFrame:
+    """Return a row per method and season with the factor of each step on Cw."""
+    steps = ladder.filter(pl.col("step") != START).with_columns(column=pl.col("step") + STEP_FACTOR)
+    wide = steps.pivot(
+        "column", index=["to_method", "season"], values="factor", aggregate_function="first"
+    )
+    return wide.rename({"to_method": "method"})
+
+
+# -- Changes and races ------------------------------------------------------------------------
+
+
+def read_changes(results: Results, edition: str | None = None) -> Data:
+    """Return what changes from one edition to the next, for whom, and the races.
+
+    Args:
+        results: the tables.
+        edition: what is shown first; the one that counts when left out.
+    """
+    changed = results.line_changes.filter(pl.col("change") != "same")
+    names = changed["to_edition"].unique().sort().to_list()
+    chosen = edition or (results.edition if results.edition in names or not names else names[-1])
+    return {
+        "lines": changed,
+        "changed": sum_up_changes(results.line_changes.filter(to_edition=chosen)),
+        "names": names,
+        "races": results.views.race_days(),
+        "chosen": {"to_edition": chosen},
+    }
+
+
+def read_race(results: Results, race: str, day: dt.date) -> Data:
+    """Return the results of a race by every pair of editions that is compared."""
+    all_races = results.views.ask("races")
+    names = all_races["to_edition"].unique().sort().to_list()
+    chosen = results.edition if results.edition in names else names[-1]
+    rows = all_races.filter(race=race, race_date=day)
+    now = rows.filter(to_edition=chosen)
+    chances: dict[tuple[str, str], float | None] = {}
+    if now.height:
+        chances = race_chances(results.views, now["from_edition"][0], chosen)
+    classes = now.partition_by("crew_class", maintain_order=True)
+    return {
+        "race": race,
+        "on": day,
+        "rows": rows,
+        "winners": [
+            sum_up_class(own, chances.get((f"{race} {day}", own["crew_class"][0])))
+            for own in classes
+        ],
+        "names": names,
+        "chosen": {"to_edition": chosen},
+    }
+
+
+def sum_up_class(rows: pl.DataFrame, chance: float | None) -> Row:
+    """Return who wins a class of a race by both editions, and among whom.
+
+    Args:
+        rows: of a race and class under two editions.
+        chance: how likely it is that another wins than before; None where not known.
+    """
+    winners = {}
+    for side in ("old", "new"):
+        winners[side] = rows.filter(pl.col(f"{side}_rank") == 1)["name"].first()
+    has_power = pl.any_horizontal(pl.col("old_power_w", "new_power_w").is_not_null())
+    n_known, n_placed = rows.filter(has_power).height, rows["new_rank"].count()
+    is_among_few = n_placed < n_known
+    return {
+        "crew_class": rows["crew_class"][0],
+        **winners,
+        "n_known": n_known,
+        "n_placed": n_placed,
+        # Who else might have won is not known of crews without a place.
+        "chance": None if is_among_few else chance,
+        **measure_fatigue_range(rows.drop_nulls("new_rank")["rowing_time_s"]),
+    }
+
+
+def measure_fatigue_range(times_s: pl.Series) -> Row:
+    """Return whether times [s] lie outside those that the correction for fatigue was made for.
+
+    Returns:
+        `is_stretched`, `fastest_s` and `slowest_s`.
+    """
+    (first, _), (last, _) = FATIGUE_REFERENCE
+    is_stretched = not times_s.is_between(first, last).all()
+    return {"is_stretched": is_stretched, "fastest_s": times_s.min(), "slowest_s": times_s.max()}
+
+
+# -- Quality and guides -----------------------------------------------------------------------
+
+
+def read_quality(results: Results) -> Data:
+    """Return what was set aside, what is flagged, and how often each check found something."""
+    views = results.views
+    statuses = views.ask("statuses").filter(method=results.method)
+    by_status = statuses.group_by("status", maintain_order=True).agg(pl.col("number").sum())
+    counts = dict.fromkeys(("accepted", "flagged", "rejected"), 0) | dict(by_status.rows())
+    faults = views.table("quarantine").with_columns(
+        lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
+    )
+    is_shown = pl.col("method").is_in(results.methods)
+    return {
+        "statuses": counts,
+        "set_aside": faults,
+        "flags": views.ask("flagged_boats").filter(is_shown),
+        "run_reasons": views.ask("counts", "run").filter(is_shown),
+        "checks": views.ask("checks").filter(is_shown),
+        "methods": results.methods,
+        "chosen": {"method": results.method},
+    }
+
+
+def read_guide(name: str) -> Data:
+    """Return a document of the project by language."""
+    texts = {tag: guide_file(name, tag).read_text("utf-8") for tag in LANGUAGES}
+    return {"guide": texts}
+
+
+def read_edition_page(results: Results, edition: str) -> Data:
+    """Return the notice of a published edition by language, and which files it offers."""
+    folder = edition_path(results.views.store, edition)
+    notices = {"nl": folder / NOTICE, "en": folder / NOTICE_EN}
+    return {
+        "name": edition,
+        "notices": {tag: file.read_text("utf-8") for tag, file in notices.items()},
+        "sheets": SHEETS,
+    }

@@ -1,0 +1,116 @@
+"""The tables of a data folder, read once for all documents that are made of them."""
+
+from collections.abc import Mapping
+from functools import cache, cached_property
+from typing import Any, Final, TypeAlias
+
+import polars as pl
+
+from pipeline.register.register import default_method
+from pipeline.tables.row import Row
+from warehouse.derive.studies import FIRST_PUBLISHED
+from warehouse.queries.answers import current_edition, line_changes
+from warehouse.queries.views import Views
+from warehouse.store.database import make_unknown_edition_error
+
+Data: TypeAlias = dict[str, Any]
+"""What a query found, by the names that its template uses."""
+
+_QUESTIONS: Final = ("curves", "run_points", "flagged")
+"""What `Results.of_boat` asks by a question of `Views` rather than by a table."""
+
+
+class Results:
+    """The tables of a data folder.
+
+    Args:
+        views: the open database.
+
+    Attributes:
+        answers: what was read of editions so far, by edition and boat.
+    """
+
+    def __init__(self, views: Views) -> None:
+        self.views = views
+        self.answers: dict[str, dict[str, list[Row]]] = {}
+        self._split_by_boat = cache(self._read_by_boat)
+
+    @cached_property
+    def methods(self) -> list[str]:
+        """Names of the methods that are shown, in the order of the database.
+
+        How 2014 was first printed is left out, unless it is the only method.
+        """
+        names = self.views.table("methods")["method"].to_list()
+        return [name for name in names if name != FIRST_PUBLISHED] or names
+
+    @cached_property
+    def method(self) -> str:
+        """The method that is shown first."""
+        return default_method(self.methods)
+
+    @cached_property
+    def before_and_after(self) -> list[str]:
+        """The first method and the one that is shown first; one name where they are the same."""
+        return list(dict.fromkeys((self.methods[0], self.method)))
+
+    @cached_property
+    def compared_methods(self) -> list[str]:
+        """What a boat is compared by: as published, as shown first, and as decided."""
+        decided = self.views.table("editions")["method"].drop_nulls()
+        return [name for name in self.methods if name in {*self.before_and_after, *decided}]
+
+    @cached_property
+    def edition(self) -> str:
+        """The edition that counts, or the best draft."""
+        return current_edition(self.views)
+
+    @cached_property
+    def register(self) -> pl.DataFrame:
+        """The lines of all editions and drafts."""
+        return self.views.register()
+
+    @cached_property
+    def line_changes(self) -> pl.DataFrame:
+        """Every pair of lines that is compared."""
+        return line_changes(self.views)
+
+    @cached_property
+    def boat_names(self) -> dict[str, str]:
+        """The name of each boat that has one, by its number."""
+        return dict(self.views.table("boats").select("fsn_no", "name").drop_nulls().rows())
+
+    def rows(self, table: str) -> pl.DataFrame:
+        """Return the rows of a table of the methods that are shown."""
+        return self.views.table(table).filter(pl.col("method").is_in(self.methods))
+
+    def choose_edition(self, edition: str | None) -> str:
+        """Return the edition that is asked for, or the one that counts.
+
+        Raises:
+            MissingKnowledgeError: there is no such edition.
+        """
+        names = self.register["edition"].unique()
+        chosen = edition or self.edition
+        if chosen not in names:
+            raise make_unknown_edition_error(chosen, names)
+        return chosen
+
+    def of_boat(self, source: str, fsn_no: str) -> pl.DataFrame:
+        """Return the rows of a table or question about a boat."""
+        by_boat = self._split_by_boat(source)
+        return by_boat.get(fsn_no, by_boat[""])
+
+    def _read_by_boat(self, source: str) -> Mapping[str, pl.DataFrame]:
+        """Return the rows of a table or question by boat, and none of them by ""."""
+        if source == "register":
+            rows = self.register
+        elif source in _QUESTIONS:
+            rows = self.views.ask(source)
+        else:
+            rows = self.views.table(source)
+        if "fsn_no" not in rows.columns:
+            boat_of_tow = self.views.table("tows").select("tow_id", "fsn_no")
+            rows = rows.join(boat_of_tow, on="tow_id", maintain_order="left")
+        parts = rows.partition_by("fsn_no", as_dict=True, maintain_order=True)
+        return {"": rows.clear()} | {str(fsn_no): part for (fsn_no,), part in parts.items()}

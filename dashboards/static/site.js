@@ -1,0 +1,114 @@
+"use strict";
+// Selectors, tables and the search of every page. Without this script all is there, at its first choice.
+(() => {
+  const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+  const { lang, dataset: { root } } = document.documentElement;
+  const plain = (text) => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
+  const has = (text, words) => plain(words).split(/\s+/).every((word) => text.includes(word));
+  const [DECIMAL, SEPARATOR] = lang === "nl" ? [",", ";"] : [".", ","]; // as spreadsheets have them
+
+  // What selectors say is shown of all that is chosen by them; the address holds it.
+  const own = () => all(".selects select:not([data-asks])"); // the others ask the workbench something else
+  let selects = own();
+  const first = new Map(selects.map((one) => [one.name, one.value]));
+  const isChosen = (part) => selects.every(({ name, value }) =>
+    part.dataset[name] === undefined || part.dataset[name].split("|").includes(value));
+
+  function show() {
+    selects = own();
+    const chosen = selects.map(({ name }) => `[data-${name}]`).join();
+    if (chosen) for (const part of all(chosen)) part.hidden = !isChosen(part);
+    for (const table of all(".table")) {
+      const words = table.querySelector("[type=search]")?.value ?? "";
+      const rows = all("tbody tr", table);
+      for (const row of rows) row.hidden = !isChosen(row) || !has(plain(row.textContent), words);
+      table.querySelector(".tools b").textContent = rows.filter((row) => !row.hidden).length;
+    }
+    const isFirst = selects.every(({ name, value }) => first.get(name) === value);
+    for (const said of all("main [data-said]")) said.classList.toggle("unseen", !isFirst && !said.closest(".answer"));
+  }
+
+  function keep() {
+    const asked = new URLSearchParams(selects.filter((one) => first.get(one.name) !== one.value).map((one) => [one.name, one.value]));
+    try { history.replaceState(null, "", `?${asked}${location.hash}`); } catch { /* of a page from disk it may not change */ }
+    const other = document.querySelector(".language");
+    other.href = `${other.getAttribute("href").split("?")[0]}?${asked}`;
+  }
+
+  // Tables: a click on a heading sorts; numbers have no class.
+  function value(cell) {
+    if (cell.className.match(/t|w/) || cell.textContent === "") return cell.textContent;
+    const number = Number(cell.textContent.replace(DECIMAL, ".").replace("\u2212", "-").replace(/[\u00a0%]/g, ""));
+    return Number.isNaN(number) ? cell.textContent : number;
+  }
+
+  function sort(head) {
+    const down = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
+    for (const other of head.parentElement.cells) other.removeAttribute("aria-sort");
+    head.setAttribute("aria-sort", down < 0 ? "descending" : "ascending");
+    const body = head.closest("table").tBodies[0];
+    const { compare } = new Intl.Collator(lang, { numeric: true });
+    const order = (a, b) => (a === "" || b === "" ? (a === "") - (b === "") : down * (typeof a === "number" && typeof b === "number" ? a - b : compare(a, b)));
+    body.append(...[...body.rows].map((row) => [value(row.cells[head.cellIndex]), row]).sort(([a], [b]) => order(a, b)).map(([, row]) => row));
+  }
+
+  function download(table) { // a text that a spreadsheet would take for a formula is kept text
+    const cell = (text) => (typeof text === "number" ? String(text).replace(".", DECIMAL)
+      : `"${text.replace(/\u00ad/g, "").replace(/(^|[;,\t\r\n])(\s*)([=+\-@])/g, "$1$2'$3").replaceAll('"', '""')}"`);
+    const rows = all("tr", table).filter((row) => !row.hidden).map((row) => [...row.cells].map(value).map(cell).join(SEPARATOR));
+    const href = URL.createObjectURL(new Blob([`\ufeff${rows.join("\r\n")}\r\n`], { type: "text/csv" }));
+    Object.assign(document.createElement("a"), { href, download: `${document.title}.csv` }).click();
+  }
+
+  document.addEventListener("change", ({ target }) => { if (target.matches(".selects select:not([data-asks])")) { show(); keep(); } });
+  document.addEventListener("input", ({ target }) => { if (target.matches(".tools [type=search]")) show(); });
+  document.addEventListener("click", ({ target }) => {
+    if (target.matches("th button")) sort(target.parentElement);
+    if (target.matches(".csv")) download(target.closest(".table"));
+  });
+
+  // The search for a boat, type or race. A word with a typing error is found by its pairs of letters.
+  const form = document.querySelector("header form");
+  const MOST_FOUND = 12;
+  const LEAST_LIKENESS = 0.6; // share of a word's pairs of letters
+  const pairs = (text) => [...text].slice(1).map((letter, i) => text[i] + letter);
+  const texts = () => (window.FIND ?? []).map((one) => [plain(`${one[0]} ${one[1]}`), one]);
+
+  function likeness(text, word) {
+    if (/\d/.test(word)) { // a number is right or it is not
+      const isIt = (own) => own.replace(/^0+/, "") === word.replace(/^0+/, "");
+      return text.split(" ").some(isIt) ? 1 : LEAST_LIKENESS * text.includes(word);
+    }
+    const own = new Set(pairs(text));
+    const asked = pairs(word);
+    return asked.filter((pair) => own.has(pair)).length / Math.max(asked.length, 1);
+  }
+
+  function search(words) {
+    const found = texts().filter(([text]) => words.every((word) => text.includes(word)));
+    if (found.length) return found.map(([, one]) => one);
+    return texts().map(([text, one]) => [words.map((word) => likeness(text, word)), one])
+      .filter(([like]) => Math.min(...like) >= LEAST_LIKENESS)
+      .sort(([a], [b]) => Math.min(...b) - Math.min(...a)).map(([, one]) => one);
+  }
+
+  form?.addEventListener("submit", (event) => { event.preventDefault(); form.querySelector("a")?.click(); });
+  form?.addEventListener("input", () => {
+    const list = form.querySelector("ul");
+    const words = plain(form.querySelector("input").value).split(/\s+/).filter(Boolean);
+    const found = words.length ? search(words).slice(0, MOST_FOUND) : [];
+    list.hidden = !words.length;
+    list.replaceChildren(...found.map(([name, , page]) => {
+      const item = document.createElement("li");
+      item.append(Object.assign(document.createElement("a"), { href: root + page, textContent: name }));
+      return item;
+    }));
+    if (!found.length) list.append(Object.assign(document.createElement("li"), { textContent: "\u2013" }));
+  });
+
+  const asked = new URLSearchParams(location.search);
+  for (const one of selects) if ([...one.options].some((option) => option.value === asked.get(one.name))) one.value = asked.get(one.name);
+  show();
+  window.herijk = { start: show };
+  document.getElementById(location.hash.slice(1))?.closest("details")?.setAttribute("open", "");
+})();

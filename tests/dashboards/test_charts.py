@@ -1,0 +1,188 @@
+"""Charts: one picture of each kind, whole, named, and no wider than what it holds."""
+
+import re
+from xml.etree import ElementTree as ET
+
+import polars as pl
+import pytest
+
+from dashboards import charts
+from dashboards.language import Language
+from dashboards.plot import Plot, fit_scale
+
+NL = Language("nl")
+SVG = "{http://www.w3.org/2000/svg}"
+METHODS = ["as-published", "rebased"]
+SEASONS = pl.DataFrame(
+    [
+        {"method": method, "season": season, "factor": 1.01 + 0.01 * place, "lo": 1.0, "hi": None}
+        for place, method in enumerate(METHODS)
+        for season in (2009, 2010)
+    ]
+)
+CURVE = pl.DataFrame(
+    [
+        {"kind": "line", "speed_m_s": 2.2, "cw_kg_m": 30.0, "cw_lo_kg_m": 29.0, "cw_hi_kg_m": 31.0},
+        {"kind": "line", "speed_m_s": 2.6, "cw_kg_m": 32.0, "cw_lo_kg_m": 31.0, "cw_hi_kg_m": 33.0},
+        {"kind": "point", "speed_m_s": 2.4, "cw_kg_m": 31.0, "run": 1, "direction": 1, "used": True},
+        {"kind": "point", "speed_m_s": 2.5, "cw_kg_m": 33.0, "run": 4, "direction": -1,
+         "used": False},
+        {"kind": "declared", "speed_m_s": 2.4, "cw_kg_m": 31.0, "cw_lo_kg_m": 30.0,
+         "cw_hi_kg_m": 32.0, "interval": "runs_alone"},
+    ],
+    infer_schema_length=None,
+)  # fmt: skip
+TOWS = pl.DataFrame(
+    [
+        {"method": method, "crew_class": crew, "label": f"Vlet 8{crew} 2014", "page": "#",
+         "weight_kg": 800.0 + place, "b_m_s": b, "b_lo_m_s": 4.0, "b_hi_m_s": None,
+         "interval": "complete", "beyond_curve": False, "cw_outside": b > 12}
+        for method in METHODS
+        for place, (crew, b) in enumerate([("H", 4.2), ("H", 4.4), ("H", 4.5), ("D", 4.6),
+                                           ("D", 4.7), ("H", 4.9), ("D", 13.0)])
+    ]
+)  # fmt: skip
+LINES = pl.DataFrame(
+    [
+        {"method": method, "quantity": "b_m_s", "explaining": "weight_kg", "crew_class": "H",
+         "x": x, "y": 4.5, "lo": 4.3, "hi": 4.7}
+        for method in METHODS
+        for x in (800.0, 806.0)
+    ]
+)  # fmt: skip
+GAINS = pl.DataFrame(
+    [("Vlet", "FSN1", 8, "H", 20.0), ("A<b", "FSN2", 6, "D", -35.0)],
+    schema=["name", "fsn_no", "rowers", "crew_class", "gain_in_two_hours_s"],
+    orient="row",
+)
+BUDGET = pl.DataFrame({"component": ["random", "wind"], "u_ratio": [0.01, 0.002]})
+SECONDS = pl.DataFrame(
+    {"run": [1, 1, 2, 2], "second": [0, 1, 0, 1], "speed_m_s": [2.4, 2.5, 2.6, 2.5],
+     "gps_m_s": [None, 2.4, 2.5, 2.5], "force_n": [200.0, 210.0, 220.0, 215.0],
+     "wind_m_s": [3.0, 3.1, 2.9, 3.3]}
+)  # fmt: skip
+CUTS = pl.DataFrame(
+    [{"run": 1, "window_start_s": 0.5, "window_end_s": 1.0, "reason": "",
+      "cut_reason": "speed_drift,gust"}]
+)  # fmt: skip
+DRAWN = {
+    "groups": lambda: charts.draw_groups(
+        NL, SEASONS, "season", "factor", ("lo", "hi"), "Logfactor", with_one=True
+    ),
+    "curves": lambda: charts.draw_curves(NL, CURVE, "Weerstandskromme"),
+    "scatter": lambda: charts.draw_scatter(
+        NL, TOWS, LINES, "b_m_s", ("b_lo_m_s", "b_hi_m_s"), "weight_kg", "B tegen gewicht"
+    ),
+    "gains": lambda: charts.draw_gains(NL, GAINS, "Tijd"),
+    "shares": lambda: charts.draw_shares(NL, BUDGET, "component", "u_ratio", "Onzekerheid"),
+    "trace lines": lambda: charts.trace_lines(SECONDS),
+    "trace frame": lambda: charts.trace_frame(NL, SECONDS, [("", CUTS)], "Metingen"),
+}
+
+
+def pictures(markup):
+    return [ET.fromstring(one) for one in re.findall(r"<svg.*?</svg>", str(markup))]  # noqa: S314
+
+
+def words(markup):
+    return [text.text for svg in pictures(markup) for text in svg.iter(f"{SVG}text")]
+
+
+@pytest.mark.parametrize("kind", DRAWN)
+def test_a_picture_is_whole_and_every_mark_lies_in_it(kind):
+    for svg in pictures(DRAWN[kind]()):
+        width, height = map(float, svg.get("viewBox").split()[2:])
+        is_named = bool(svg.get("aria-label"))
+        assert is_named != (svg.get("aria-hidden") == "true")
+        for text in svg.iter(f"{SVG}text"):
+            assert 0 <= float(text.get("x")) <= width
+            assert 0 <= float(text.get("y")) <= height
+
+
+@pytest.mark.parametrize("kind", DRAWN)
+def test_a_picture_stays_as_it_was(kind, snapshot):
+    text = re.sub(r"(<(path|text|g|rect|svg|a)\b)", r"\n\1", str(DRAWN[kind]()))
+    snapshot(f"chart-{kind.replace(' ', '-')}", text.strip() + "\n")
+
+
+def test_axes_have_units_and_numbers_in_the_language():
+    shown = words(DRAWN["scatter"]())
+    assert "B [m/s]" in shown
+    assert "Gewicht [kg]" in shown
+    assert any(re.fullmatch(r"\d,\d+", text) for text in shown)
+
+
+def test_a_boat_far_from_the_others_does_not_pull_the_scale():
+    """One B of 13 is marked at the edge, with its name; the others keep the room they need."""
+    shown = words(DRAWN["scatter"]())
+    ticks = [float(t.replace(",", ".")) for t in shown if re.fullmatch(r"\d,\d+", t)]
+    assert 4.2 >= min(ticks) > 3.0
+    assert max(ticks) < 6.0
+    assert "Vlet 8D 2014" in shown
+
+
+def test_one_legend_names_the_methods_that_are_drawn():
+    shown = words(DRAWN["groups"]())
+    assert [text for text in shown if text in ("zoals gepubliceerd", "herijkt")] == [
+        "zoals gepubliceerd", "herijkt",
+    ]  # fmt: skip
+
+
+def test_a_method_of_one_s_own_is_drawn_and_changes_no_other_s_colour():
+    own = SEASONS.with_columns(method=pl.lit("a-method"))
+
+    def inks(rows):
+        drawn = str(charts.draw_groups(NL, rows, "season", "factor", ("lo", "hi"), "x"))
+        return re.findall(r'stroke="([^"]+)"><title>[^<]*Methode: ([^,<]+)', drawn)
+
+    alone, both = (
+        dict(map(reversed, inks(SEASONS))),
+        dict(map(reversed, inks(pl.concat([SEASONS, own])))),
+    )
+    assert set(both) == {*alone, "a-method"}
+    assert {name: both[name] for name in alone} == alone
+    assert len(set(both.values())) == len(both)
+
+
+def test_a_bar_that_leaves_the_log_out_is_dashed():
+    assert str(DRAWN["curves"]()).count('stroke-dasharray="3 3"') == 1
+    complete = CURVE.with_columns(interval=pl.lit("complete"))
+    assert 'stroke-dasharray="3 3"' not in str(charts.draw_curves(NL, complete, "x"))
+
+
+def test_a_trace_says_why_it_was_cut_and_a_name_is_escaped():
+    shown = words(DRAWN["trace frame"]())
+    assert any("vlaag" in text for text in shown)
+    assert "A<b" not in str(DRAWN["gains"]())
+    assert "A&lt;b 6D: −35 s" in str(DRAWN["gains"]())
+
+
+def test_nothing_known_gives_no_picture():
+    assert charts.draw_gains(NL, GAINS.clear(), "x") == ""
+    assert charts.draw_groups(NL, SEASONS.clear(), "season", "factor", ("lo", "hi"), "x") == ""
+
+
+@pytest.mark.parametrize(
+    ("values", "ticks"),
+    [
+        ([1.0, 2.0], [1.0, 1.2, 1.4, 1.6, 1.8, 2.0]),
+        ([0.0, 41.0], [0, 10, 20, 30, 40]),
+        ([5.0], None),
+    ],
+)
+def test_ticks_are_round_numbers_within_the_scale(values, ticks):
+    scale = fit_scale(values, 0, 100)
+    assert all(scale.low <= tick <= scale.high for tick in scale.ticks)
+    assert ticks is None or scale.ticks == pytest.approx(ticks)
+    assert scale(scale.low) == 0
+    assert scale(10 * scale.high) == 100
+
+
+def test_a_legend_too_long_for_a_line_has_more_of_them():
+    names = dict.fromkeys(range(4), "een lange naam van een methode")
+    plot = Plot(NL, legend=names)
+    plot.add_legend(names)
+    (svg,) = pictures(plot.to_svg("x"))
+    rows = {text.get("y") for text in svg.iter(f"{SVG}text")}
+    assert len(rows) > 1
+    assert plot.top > Plot(NL).top

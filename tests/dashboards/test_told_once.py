@@ -1,0 +1,106 @@
+"""What a document says is the same on its page, in a terminal and in JSON, in either language."""
+
+import json
+import re
+
+import pytest
+
+from dashboards import reports
+from dashboards.document import Document
+from dashboards.language import Language
+from dashboards.queries.boats import read_boat
+from dashboards.queries.results import Results
+from dashboards.reading import read_blocks
+from dashboards.site import list_pages
+from dashboards.terminal import to_text
+from pipeline.messages import LANGUAGES
+from tests.conftest import METHODS
+from warehouse.queries.change_report import last_changes
+from warehouse.queries.views import Views
+
+FRAME = {"simulated": True, "has_reports": False, "path": "", "site_root": "", "other": "",
+         "other_page": "", "code_version": ""}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def results(store, site):
+    with Views(store) as views:
+        yield Results(views)
+
+
+def render(template, data, language, **settings):
+    document = Document(Language(language), "", data.get("chosen"), **settings)
+    return document.render(template, **FRAME, **data)
+
+
+def squeeze(text):
+    return re.sub(r"\s+", " ", text)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_terminal_says_every_statement_of_a_boats_page(results, language):
+    for fsn_no in results.views.table("tows")["fsn_no"].unique():
+        page = render("boat", read_boat(results, fsn_no), language, pictures=False)
+        said = [block.text for block in read_blocks(page, folded=True) if block.said]
+        in_terminal = squeeze(to_text(page))
+        assert said
+        assert [text for text in said if squeeze(text) not in in_terminal] == []
+
+
+def test_json_has_the_statements_of_the_terminal_and_the_number_of_the_table(herijk, built):
+    edition = f"concept-{METHODS[1]}"
+    line = built.table("register").filter(edition=edition).drop_nulls("cw_kg_m")
+    line = line.row(0, named=True)
+    call = ("audit", line["fsn_no"], "--edition", edition, "--data", built.data)
+    printed = squeeze(herijk(*call)[1])
+    result = json.loads(herijk(*call, "--json")[1])
+    about = f"{line['fsn_no']} {line['rowers']}{line['crew_class']}"
+    own = [one for one in result["statements"] if one["about"] == about]
+    assert {"interval", "objection"} <= {one["kind"] for one in own}
+    assert [one["text"] for one in own if squeeze(one["text"]) not in printed] == []
+    numbers = [one["cw_kg_m"] for one in result["answers"] if one["tow_id"] == line["tow_id"]]
+    assert numbers == [line["cw_kg_m"]]
+
+
+def get_words(block):
+    """The words of a block without its numbers; of a table its titles."""
+    text = " | ".join(block.rows[0]) if block.kind == "table" else block.text
+    if block.kind == "terms":
+        text = " | ".join(name for name, _ in block.rows)
+    return re.sub(r"[-+\u2212]?\d[\d.,:]*", "9", text)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_template_says_what_it_said(results, snapshot, language):
+    """A page of each template, without numbers, names and pictures."""
+    shown = {}
+    for page in list_pages(results):
+        if page.template not in shown:
+            html = render(page.template, page.query(), language, pictures=False)
+            words = [get_words(block) for block in read_blocks(html, folded=True)]
+            shown[page.template] = dict.fromkeys(filter(None, words))
+    names = results.views.table("boats").select("name", "fsn_no", "boat_type").rows()
+    text = "\n\n".join("\n".join((f"# {name}", *words)) for name, words in shown.items())
+    known = {value for row in names for value in row if value}
+    for value in sorted(known, key=len, reverse=True):
+        text = text.replace(value, "*").replace(re.sub(r"\d+", "9", value), "*")
+    snapshot(f"pages-{language}", text + "\n")
+
+
+def test_nothing_is_left_unsaid(site):
+    """No brace of a template, no None and no code of Python reaches a reader."""
+    for file in sorted(site.rglob("*.html")):
+        page = file.read_text("utf-8")
+        text = re.sub(r"<(style|script|svg)\b.*?</\1>|<[^>]*>", " ", page, flags=re.DOTALL)
+        assert not re.search(r"\{[a-z_]+\}|\bNone\b|datetime|\[\]|\bnan\b", text), file
+
+
+def test_a_mail_says_what_the_page_says(built):
+    run = reports.LastRun("2026-11-20T03:00", "changed", "", "2026-11-20T03:00")
+    changes = last_changes(built.store)
+    pages = reports.make_report_pages(built.store, changes, [], run)
+    _, text = reports.write_mail(changes, [], simulated=True, run=run)
+    in_page = squeeze(re.sub("<[^>]*>", "", pages["latest.html"]).replace("\u00a0", " "))
+    lines = [line for line in text.split("\n\n")[1].splitlines() if line]
+    assert lines
+    assert [line for line in lines if squeeze(line.replace("\u00a0", " ")) not in in_page] == []
