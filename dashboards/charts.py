@@ -14,6 +14,7 @@ from markupsafe import Markup, escape
 from dashboards import words
 from dashboards.language import Language
 from dashboards.plot import GREY, INKS, Plot, Scale, fit_scale
+from pipeline.history import ERAS
 from pipeline.messages import say
 from pipeline.method.definition import COMPLETE
 from pipeline.method.reading import list_shipped_methods
@@ -99,6 +100,68 @@ def _label_groups(plot: Plot, names: Sequence[str], width: float) -> None:
     for place, name in enumerate(names):
         if place % every == 0:
             plot.add_text(plot.left + (place + 0.5) * width, plot.bottom + 17, name, "middle")
+
+
+SEASON_ROW_PX: Final = 26
+ERA_ROW_PX: Final = 24
+SEASON_LABEL_PX: Final = 52
+
+
+def draw_seasons(language: Language, rows: pl.DataFrame, caption: str) -> Markup:
+    """Return the change of Cw by every method, a row for each season, under what was measured with.
+
+    Seasons lie below each other, so that the picture is as wide on a phone as on paper.
+
+    Args:
+        language: of what is written.
+        rows: of `season_changes`.
+        caption: of the picture.
+    """
+    known = rows.drop_nulls("median_ratio").sort("season").to_dicts()
+    if not known:
+        return Markup()
+    methods = list(dict.fromkeys(row["method"] for row in known))
+    seasons = list(dict.fromkeys(row["season"] for row in known))
+    eras = [era for era in ERAS if any(era.first <= season <= era.last for season in seasons)]
+    legend = {_get_method_kind(name): language.name_method(name) for name in methods}
+    height = SEASON_ROW_PX * len(seasons) + ERA_ROW_PX * len(eras) + 90
+    plot = Plot(language, 480, height, SEASON_LABEL_PX, 30, legend)
+    ratios = [row[name] for row in known for name in ("lowest_ratio", "highest_ratio")]
+    x = plot.fit_x([100.0 * (ratio - 1.0) for ratio in ratios], including=[0.0])
+    for tick in x.ticks:
+        grid = f"M{x(tick):.1f} {plot.top}V{plot.bottom}"
+        is_zero = abs(tick) < x.step / 2
+        plot.add_path(grid, GREY, style={"stroke-opacity": None if is_zero else 0.25})
+        sign = "" if is_zero else "+"
+        label = language.write_number(tick, x.decimals, sign)
+        plot.add_text(x(tick), plot.bottom + 16, label, "middle")
+    axis = language.say(say("Cw by the method / Cw as published [%]"))
+    plot.add_text((plot.left + plot.right) / 2, plot.height - 6, axis, "middle")
+    top = float(plot.top)
+    for era in eras:
+        plot.add_text(4, top + 16, language.say(era.measured), size=11)
+        plot.add_path(f"M4 {top:.1f}H{plot.right}", GREY, style={"stroke-opacity": 0.5})
+        top += ERA_ROW_PX
+        for season in [one for one in seasons if era.first <= one <= era.last]:
+            plot.add_text(4, top + SEASON_ROW_PX / 2 + 4, str(season))
+            for row in [one for one in known if one["season"] == season]:
+                place = (methods.index(row["method"]) + 1) / (len(methods) + 1)
+                _add_season(plot, x, top + place * SEASON_ROW_PX, row)
+            top += SEASON_ROW_PX
+    plot.add_legend(legend)
+    return plot.to_svg(caption)
+
+
+def _add_season(plot: Plot, x: Scale, y: float, row: Row) -> None:
+    """Add what a method makes of a season: the median, and the reach of its tows."""
+    kind = _get_method_kind(row["method"])
+    low, middle, high = (
+        x(100.0 * (row[name] - 1.0)) for name in ("lowest_ratio", "median_ratio", "highest_ratio")
+    )
+    ink = INKS[kind % len(INKS)]
+    plot.add_path(f"M{low:.1f} {y:.1f}H{high:.1f}", ink, style={"stroke-width": 2})
+    tip = _write_tip(plot.language, row, "season", "method", "median_ratio")
+    plot.add_point(middle, y, kind, tip)
 
 
 def _get_method_kind(method: str) -> int:
@@ -221,31 +284,47 @@ def _add_tow(
         plot.add_text(at + side, up - 5, row["label"], anchor, size=10)
 
 
+GAIN_ROW_PX: Final = 18
+GAIN_LABEL_PX: Final = 176
+"""Room for the name of a crew."""
+WITHIN_OPACITY: Final = 0.45
+"""How a change within its uncertainty is drawn."""
+
+
 def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
     """Return a bar for every crew: what a race of two hours at equal power gains or loses.
 
     Args:
         language: of what is written.
-        lines: with `gain_in_two_hours_s` [s] and the boat and crew.
+        lines: with `gain_in_two_hours_s` [s], `exceeds_interval`, and the boat and crew.
         caption: of the picture.
     """
     known = lines.drop_nulls("gain_in_two_hours_s")
     rows = known.sort("gain_in_two_hours_s", "fsn_no", descending=[True, False])
     if rows.is_empty():
         return Markup()
-    plot = Plot(language, height=240)
-    gains = rows["gain_in_two_hours_s"]
-    y = fit_scale(gains, plot.bottom, plot.top, including=[0.0])
-    plot.add_axes(None, y, "", language.say(SECONDS))
-    width = (plot.right - plot.left) / rows.height
+    plot = Plot(language, 480, GAIN_ROW_PX * rows.height + 70, GAIN_LABEL_PX, 16)
+    ends = [*rows["gain_in_two_hours_s"], 0.0]
+    x = fit_scale(ends, plot.left + 36, plot.right - 36)
+    for tick in x.ticks:
+        is_zero = abs(tick) < x.step / 2
+        style = {"stroke-opacity": None if is_zero else 0.25}
+        plot.add_path(f"M{x(tick):.1f} {plot.top}V{plot.bottom}", GREY, style=style)
+        label = language.write_number(tick, x.decimals, "" if is_zero else "+")
+        plot.add_text(x(tick), plot.bottom + 16, label, "middle")
+    plot.add_text((plot.left + plot.right) / 2, plot.height - 6, language.say(SECONDS), "middle")
     for place, row in enumerate(rows.to_dicts()):
         gain = row["gain_in_two_hours_s"]
-        x = plot.left + (place + 0.5) * width
+        y = plot.top + (place + 0.5) * GAIN_ROW_PX
         crew = f"{row['name'] or row['fsn_no']} {row['rowers']}{row['crew_class']}"
-        tip = f"{crew}: {language.write_number(gain, 0, '+')} s"
+        written = language.write_number(gain, 0, "+")
+        opacity = WITHIN_OPACITY if row["exceeds_interval"] is False else None
+        style = {"stroke-width": 0.7 * GAIN_ROW_PX, "stroke-opacity": opacity}
         ink = INKS[1] if gain < 0 else INKS[0]
-        bar = f"M{x:.1f} {y(0):.1f}V{y(gain):.1f}"
-        plot.add_path(bar, ink, tip, {"stroke-width": round(0.85 * width, 1)})
+        plot.add_path(f"M{x(0):.1f} {y:.1f}H{x(gain):.1f}", ink, f"{crew}: {written} s", style)
+        plot.add_text(GAIN_LABEL_PX - 6, y + 4, crew, "end", size=11)
+        side = -5 if gain < 0 else 5
+        plot.add_text(x(gain) + side, y + 4, written, "end" if gain < 0 else "start", size=10)
     return plot.to_svg(caption)
 
 

@@ -4,13 +4,14 @@ import re
 import shutil
 import sys
 import textwrap
-from collections.abc import Iterator
-from typing import Final
+from collections.abc import Iterator, Sequence
+from typing import Final, NamedTuple, Self
 
 from rich.console import Console
 from rich.table import Table
 
 from dashboards.reading import Block, read_blocks
+from pipeline.messages import tell
 
 MAX_PROSE_WIDTH: Final = 110
 """Largest number of characters on a line of prose."""
@@ -21,6 +22,9 @@ UNLIMITED_WIDTH: Final = 1000
 MIN_HEADING_WIDTH: Final = 9
 """Characters that a title may take however narrow its column is."""
 
+MIN_TEXT_WIDTH: Final = 16
+"""Characters of a column of texts before they are broken over several lines."""
+
 INDENT: Final = "  "
 NOTHING: Final = "-"
 """What an empty cell of a table shows."""
@@ -29,9 +33,15 @@ NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0[%sN])?|-")
 """A cell that is aligned to the right."""
 
 
-def to_text(html: str, *, folded: bool = False) -> str:
-    """Return a document as text; what is folded on its page only where that is asked for."""
-    is_terminal = sys.stdout.isatty()
+def to_text(html: str, *, folded: bool = False, wide: bool = False) -> str:
+    """Return a document as text.
+
+    Args:
+        html: the document.
+        folded: whether to show what is folded on its page.
+        wide: whether lines may be longer than the terminal is wide, as they are in a file.
+    """
+    is_terminal = sys.stdout.isatty() and not wide
     width = shutil.get_terminal_size().columns if is_terminal else UNLIMITED_WIDTH
     parts = [_write(block, width) for block in read_blocks(html, folded=folded)]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(parts)).strip()
@@ -58,23 +68,65 @@ def _write(block: Block, width: int) -> str:
     return "\n".join(lines)
 
 
+class Column(NamedTuple):
+    """A column of a table: its title on one or more lines, its cells, and how narrow it can be."""
+
+    title: str
+    cells: Sequence[str]
+    min_width: int
+
+    @classmethod
+    def from_cells(cls, title: str, cells: Sequence[str]) -> Self:
+        """Return the column of cells; a number or a word is never broken."""
+        widest = max(map(len, cells), default=0)
+        words = [word for cell in cells for word in cell.split(" ")]
+        longest_word = max(map(len, words), default=0)
+        lines = textwrap.wrap(title, max(MIN_HEADING_WIDTH, widest), break_long_words=False)
+        of_title = max(map(len, lines), default=0)
+        min_width = max(longest_word, min(widest, MIN_TEXT_WIDTH), of_title)
+        return cls("\n".join(lines), cells, min_width)
+
+
 def _draw_table(rows: list[list[str]], width: int) -> str:
-    """Return a table as lines, columns of numbers to the right."""
+    """Return a table as lines, columns of numbers to the right.
+
+    Where not all columns fit, the last are left out, and named below the table.
+    """
     titles, *body = rows
-    table = Table(box=None, pad_edge=False, header_style="", collapse_padding=True)
     shown = [[cell or NOTHING for cell in row] for row in body]
-    for title, cells in zip(titles, zip(*shown, strict=True), strict=True):
-        title_width = max(MIN_HEADING_WIDTH, *map(len, cells))
-        is_number = all(map(NUMBER.fullmatch, cells))
+    columns = [
+        Column.from_cells(title, cells)
+        for title, cells in zip(titles, zip(*shown, strict=True), strict=True)
+    ]
+    table = Table(box=None, pad_edge=False, header_style="", collapse_padding=True)
+    fitting = columns[: _count_fitting(columns, width - len(INDENT))]
+    for column in fitting:
+        is_number = all(map(NUMBER.fullmatch, column.cells))
         table.add_column(
-            "\n".join(textwrap.wrap(title, title_width, break_long_words=False)),
+            column.title,
             justify="right" if is_number else "left",
             vertical="bottom",
             overflow="fold",
+            min_width=column.min_width,
         )
     for row in shown:
-        table.add_row(*row)
-    return "\n".join(_print(table, width - len(INDENT)))
+        table.add_row(*row[: len(fitting)])
+    lines = [*_print(table, width - len(INDENT))]
+    if len(fitting) < len(columns):
+        left_out = ", ".join(titles[len(fitting) :])
+        text = tell("Left out for want of room, see --wide: {}", left_out)
+        lines += textwrap.wrap(text, width, initial_indent=INDENT, subsequent_indent=INDENT)
+    return "\n".join(lines)
+
+
+def _count_fitting(columns: Sequence[Column], width: int) -> int:
+    """Return how many columns fit on a line, each with a blank between; at least one."""
+    used = -1
+    for place, column in enumerate(columns):
+        used += column.min_width + 1
+        if used > width:
+            return max(place, 1)
+    return len(columns)
 
 
 def _print(table: Table, width: int) -> Iterator[str]:

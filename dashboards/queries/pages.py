@@ -16,7 +16,6 @@ from pipeline.studies.ladder import START
 from pipeline.tables.display import STEP_FACTOR
 from pipeline.tables.keys import SEASON_LEVEL
 from pipeline.tables.row import Row
-from warehouse.derive.studies import JUDGEMENT
 from warehouse.editions.compare import causes_of
 from warehouse.queries.answers import race_chances
 from warehouse.queries.change_report import last_changes
@@ -48,8 +47,32 @@ def read_start(results: Results) -> Data:
         "n_tows": views.table("tows").height,
         "seasons": seasons.row(0, named=True),
         "changed": sum_up_changes(results.line_changes.filter(to_edition=results.edition)),
+        "vote": sum_up_gains(results.line_changes.filter(to_edition=results.edition)),
+        "then": read_years(results)["most_changed"],
         "rebuilt": last_changes(views.store),
         **read_season_changes(results),
+    }
+
+
+def sum_up_gains(lines: pl.DataFrame) -> Data | None:
+    """Return what an edition does to crews in a race of two hours at equal power.
+
+    Args:
+        lines: rows of `warehouse.queries.answers.line_changes` of two editions.
+
+    Returns:
+        Numbers of `crews` that change, of `slower` that may take longer and `faster` that must take
+        less, and the `median_s` of what they gain or lose; None where nothing changes.
+    """
+    gain_s = lines["gain_in_two_hours_s"].drop_nulls()
+    moved_s = gain_s.filter(gain_s.round() != 0)
+    if moved_s.is_empty():
+        return None
+    return {
+        "crews": gain_s.len(),
+        "slower": (moved_s > 0).sum(),
+        "faster": (moved_s < 0).sum(),
+        "median_s": gain_s.abs().median(),
     }
 
 
@@ -253,7 +276,6 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
         "ladder": _tabulate_ladder(
             views.table("season_ladder").filter(pl.col("to_method").is_in(results.methods))
         ),
-        "options": views.table("option_summary").filter(study=JUDGEMENT),
         "eras": eras,
         "methods": results.methods,
         "chosen": {"method": chosen},
@@ -306,6 +328,7 @@ def read_changes(results: Results, edition: str | None = None) -> Data:
     return {
         "lines": changed,
         "changed": sum_up_changes(results.line_changes.filter(to_edition=chosen)),
+        "vote": sum_up_gains(results.line_changes.filter(to_edition=chosen)),
         "names": names,
         "races": results.views.race_days(),
         "chosen": {"to_edition": chosen},

@@ -106,6 +106,12 @@
     if (!found.length) list.append(Object.assign(document.createElement("li"), { textContent: "\u2013" }));
   });
 
+  // A card about one's own boat leads to the search.
+  for (const card of all(".to-find")) card.addEventListener("click", (event) => {
+    event.preventDefault();
+    form?.querySelector("input").focus();
+  });
+
   const asked = new URLSearchParams(location.search);
   for (const one of selects) if ([...one.options].some((option) => option.value === asked.get(one.name))) one.value = asked.get(one.name);
   show();

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import PATH, Seasons, data_option, json_option, show, show_files
+from herijk.cli.options import PATH, Seasons, data_option, form_options, show, show_files
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import tell
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @click.command(cls=Command)
 @argument("directory", type=PATH, help="Folder to make.")
-@json_option
+@form_options
 def init(directory: Path) -> None:
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
     from warehouse.archive.empty_archive import write_templates
@@ -41,7 +41,7 @@ def init(directory: Path) -> None:
 @option("--seed", type=click.IntRange(0), default=1, help="Seed of the random numbers.")
 @option("--world", default="history", help="What is wrong in it; see --worlds.")
 @flag("--worlds", help="List the worlds, and stop.")
-@json_option
+@form_options
 def simulate(
     directory: Path | None,
     seasons: range,
@@ -79,7 +79,7 @@ def simulate(
     help="The archive folder. Without it only the machine and the data folder are checked.",
 )
 @data_option
-@json_option
+@form_options
 def check(archive: Path | None, store: "Store") -> None:
     """What is wrong in an archive, by cause, and whether this machine is ready for a rebuild.
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from herijk.cli.options import archive_option, data_option, json_option, show
+from herijk.cli.options import archive_option, data_option, form_options, show
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.messages import tell
 
@@ -41,7 +41,7 @@ TOW_FIELDS: Final = (
 @flag("--steps", help="Also show the methods, tows, runs and statistics behind the answer.")
 @option("--method", help="Show this method only.")
 @option("--tow", help="With --steps: show this tow only.")
-@json_option
+@form_options
 def audit(
     names: tuple[str, ...],
     store: "Store",
@@ -132,7 +132,7 @@ def show_lineage(store: "Store", edition: str, name: str) -> None:
 @archive_option
 @data_option
 @option("--method", help="Method. Default: that of the newest edition, or rebased.")
-@json_option
+@form_options
 def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> None:
     """What a tow shows while the boat waits: provisional, and nothing is stored."""
     from dashboards.queries.quay import describe_tow

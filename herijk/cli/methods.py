@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import click
 
-from herijk.cli.options import as_of_option, data_option, json_option, show, show_files
+from herijk.cli.options import as_of_option, data_option, form_options, show, show_files
 from herijk.cli.speaking import Command, Group, argument, option
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE, tell
@@ -25,7 +25,7 @@ METHOD_FIELDS: Final = ("method", "title", "description", "content_hash", "exten
 
 @click.group(cls=Group, invoke_without_command=True)
 @data_option
-@json_option
+@form_options
 @click.pass_context
 def methods(context: click.Context, store: "Store") -> None:
     """The methods: those that ship, and your own."""
@@ -49,7 +49,7 @@ def methods(context: click.Context, store: "Store") -> None:
 @methods.command("show")
 @method_argument
 @data_option
-@json_option
+@form_options
 def show_method(name: str, store: "Store") -> None:
     """What a method does other than the one it extends; all its options where it extends none."""
     show("method_file", _describe(store, name) | {"checked": ""}, METHOD_FIELDS)
@@ -58,7 +58,7 @@ def show_method(name: str, store: "Store") -> None:
 @methods.command()
 @method_argument
 @data_option
-@json_option
+@form_options
 def check(name: str, store: "Store") -> None:
     """Read a method file and say what it does; an error is named with its line."""
     show("method_file", _describe(store, name) | {"checked": name}, METHOD_FIELDS)
@@ -75,7 +75,7 @@ def _describe(store: "Store", name_or_file: str) -> dict[str, Any]:
 @argument("name", help="Name of the new method, for example ours-2027.")
 @option("--from", "base", default="rebased", help="Method that it begins from.")
 @data_option
-@json_option
+@form_options
 def new(name: str, base: str, store: "Store") -> None:
     """Begin a method file NAME.toml here, which extends another; every option is listed in it."""
     from pipeline.method.writing import write_new_method_text
@@ -106,7 +106,7 @@ def new(name: str, base: str, store: "Store") -> None:
     help="Fatigue correction of races between editions: none, known (2 to 3 h only) or extend.",
 )
 @as_of_option
-@json_option
+@form_options
 def compare(old: str, new: str, store: "Store", fatigue: str, as_of: dt.date | None) -> None:
     """Two editions or methods side by side: who gains, who loses, and why.
 

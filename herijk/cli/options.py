@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 F = TypeVar("F", bound=Callable[..., Any])
 
 PATH: Final = click.Path(path_type=Path)
-AS_JSON: Final = "herijk.as_json"
-"""Where click keeps that the result is for a program."""
+AS_JSON, WIDE = "herijk.as_json", "herijk.wide"
+"""Where click keeps that the result is for a program, and that tables may be wide."""
 
 
 def folder_option(name: str, *parameter: str, **settings: Any) -> Callable[[F], F]:
@@ -42,9 +42,26 @@ archive_option = folder_option("archive", required=True, help="The archive folde
 data_option = folder_option(
     "data", "store", default="data", callback=_store, help="Folder with everything Herijk writes."
 )
+
+
+def _keep_wide(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+    context.meta[WIDE] = wanted
+
+
 json_option = flag(
     "--json", expose_value=False, callback=_keep_as_json, help="Print the result as JSON."
 )
+wide_option = flag(
+    "--wide",
+    expose_value=False,
+    callback=_keep_wide,
+    help="Show all columns of tables, however wide the terminal is.",
+)
+
+
+def form_options(command: F) -> F:
+    """Add how the result of a command is printed: `--json` and `--wide`."""
+    return json_option(wide_option(command))
 
 
 class Day(click.ParamType[dt.date]):
@@ -120,7 +137,8 @@ def show(
     else:
         from dashboards.terminal import to_text
 
-        click.echo(to_text(html, folded=folded))
+        is_wide = bool(click.get_current_context().meta.get(WIDE))
+        click.echo(to_text(html, folded=folded, wide=is_wide))
 
 
 def _choose_rows(value: Any, chosen: Mapping[str, str]) -> Any:

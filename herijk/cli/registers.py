@@ -9,7 +9,7 @@ from herijk.cli.options import (
     Day,
     as_of_option,
     data_option,
-    json_option,
+    form_options,
     show,
     show_results,
 )
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 )
 @data_option
 @as_of_option
-@json_option
+@form_options
 def register(
     edition: str | None, due: bool, years: bool, store: "Store", as_of: dt.date | None
 ) -> None:
@@ -86,7 +86,7 @@ def _choose_method(store: "Store", edition: str | None) -> str | None:
 @click.command(cls=Command)
 @data_option
 @option("--method", help="Method whose factors are shown. Default: the best that was applied.")
-@json_option
+@form_options
 def seasons(store: "Store", method: str | None) -> None:
     """What was wrong with log, force and wind in each season, and how sure that is."""
     from dashboards.queries import pages
@@ -107,7 +107,7 @@ def seasons(store: "Store", method: str | None) -> None:
 @option("--carry", help="Printed edition whose lines are re-based for boats without measurements.")
 @option("--published-on", type=Day(), help="Day of publication. Default: today.")
 @data_option
-@json_option
+@form_options
 def publish(
     edition: str,
     valid_from: dt.date,
@@ -140,7 +140,7 @@ def publish(
 @click.command(cls=Command)
 @data_option
 @option("--head", help="The seal of the last edition, from the minutes.")
-@json_option
+@form_options
 def verify(store: "Store", head: str | None) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
     from warehouse.editions.verify import verify as verify_editions

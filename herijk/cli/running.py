@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from herijk.cli.options import Seasons, archive_option, data_option, json_option, show
+from herijk.cli.options import Seasons, archive_option, data_option, form_options, show
 from herijk.cli.speaking import Command, flag, option
 from pipeline.errors import BrokenPromiseError, NoTowsYetError
 from pipeline.messages import LANGUAGE, spoken, tell
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     "there. Default: those that beheer.toml lists, or all that ship.",
 )
 @option("--seasons", type=Seasons(), help="Read these seasons only.")
-@json_option
+@form_options
 def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: range | None) -> None:
     """From the archive to registers and tables; only what changed is done again."""
     from assets.rebuild import rebuild as run
