@@ -289,18 +289,26 @@ def with_named_ends(spread: pl.DataFrame) -> pl.DataFrame:
 
 
 def sum_up_repeats(spread: pl.DataFrame, method: str) -> Data:
-    """Return how well tows repeat over all seasons, under the first method and under another.
+    """Return how well tows of each era repeat, under the first method and under another.
+
+    Eras are kept apart: what instruments gained from one era to the next would otherwise look like
+    a gain of the method.
 
     Args:
         spread: rows of `with_named_ends`.
         method: the other.
+
+    Returns:
+        `repeats`: for every era its name, `now` and `then`.
     """
-    overall = spread.filter(scope="all").drop_nulls("sd_ratio")
-    by_method = {row["method"]: row for row in overall.to_dicts()}
-    return {
-        "repeats_first": next(iter(by_method.values()), None),
-        "repeats_now": by_method.get(method),
-    }
+    by_era = spread.filter(pl.col("scope") != "all").drop_nulls("sd_ratio")
+    repeats = []
+    for (era,), rows in by_era.group_by("scope", maintain_order=True):
+        by_method = {row["method"]: row for row in rows.to_dicts()}
+        then, now = next(iter(by_method.values())), by_method.get(method)
+        if now is not None:
+            repeats.append({"era": era, "now": now, "then": then})
+    return {"repeats": repeats}
 
 
 def _tabulate_ladder(ladder: pl.DataFrame) -> pl.DataFrame:
@@ -407,12 +415,14 @@ def read_quality(results: Results) -> Data:
         lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
     )
     is_shown = pl.col("method").is_in(results.methods)
+    has_found = pl.col("beyond") > 0
+    is_usual = pl.col("beyond") > 0.5 * pl.col("tows")  # what most tows have says nothing of one
     return {
         "statuses": counts,
         "set_aside": faults,
         "flags": views.ask("flagged_boats").filter(is_shown),
         "run_reasons": views.ask("counts", "run").filter(is_shown),
-        "checks": views.ask("checks").filter(is_shown),
+        "checks": views.ask("checks").filter(is_shown & has_found & ~is_usual),
         "methods": results.methods,
         "chosen": {"method": results.method},
     }
