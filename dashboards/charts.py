@@ -284,6 +284,50 @@ def _add_tow(
         plot.add_text(at + side, up - 5, row["label"], anchor, size=10)
 
 
+NUMBER_ROW_PX: Final = 28
+NUMBER_LABEL_PX: Final = 96
+
+
+def draw_number(language: Language, line: Row, caption: str) -> Markup:
+    """Return the old and the new Cw of a line on one axis, with the other boats of its type.
+
+    Args:
+        language: of what is written.
+        line: of `read_answers`.
+        caption: of the picture.
+    """
+    old = (line["old_cw_kg_m"], line["old_cw_lo_kg_m"], line["old_cw_hi_kg_m"])
+    new = (line["cw_kg_m"], line["cw_lo_kg_m"], line["cw_hi_kg_m"])
+    if new[0] is None:
+        return Markup()
+    rows = [(say("was"), old, line["old_log_known"]), (say("becomes"), new, line["new_log_known"])]
+    shown = [row for row in rows if row[1][0] is not None]
+    n_rows = len(shown) + bool(line["peers"])
+    plot = Plot(language, 480, NUMBER_ROW_PX * n_rows + 50, NUMBER_LABEL_PX, 8)
+    x = plot.fit_x([*old, *new, *line["peers"]])
+    for tick in x.ticks:
+        plot.add_path(
+            f"M{x(tick):.1f} {plot.top}V{plot.bottom}", GREY, style={"stroke-opacity": 0.25}
+        )
+        plot.add_text(x(tick), plot.bottom + 16, language.write_number(tick, x.decimals), "middle")
+    plot.add_text((plot.left + plot.right) / 2, plot.height - 6, "Cw [kg/m]", "middle")
+    for place, (name, (cw, low, high), is_complete) in enumerate(shown):
+        y = plot.top + (place + 0.5) * NUMBER_ROW_PX
+        plot.add_text(plot.left - 8, y + 4, language.say(name), "end")
+        if low is not None and high is not None:
+            dash = None if is_complete else "3 3"
+            style = {"stroke-width": 3, "stroke-dasharray": dash}
+            plot.add_path(f"M{x(low):.1f} {y:.1f}H{x(high):.1f}", INKS[place], style=style)
+        plot.add_point(x(cw), y, place, language.write("cw_kg_m", cw))
+    if line["peers"]:
+        y = plot.top + (len(shown) + 0.5) * NUMBER_ROW_PX
+        plot.add_text(plot.left - 8, y + 4, language.say(say("its type")), "end")
+        for cw in line["peers"]:
+            dot = f"M{x(cw) - 3:.1f} {y:.1f}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0z"
+            plot.add_path(dot, GREY, language.write("cw_kg_m", cw), {"fill": GREY})
+    return plot.to_svg(caption)
+
+
 GAIN_ROW_PX: Final = 18
 GAIN_LABEL_PX: Final = 176
 """Room for the name of a crew."""

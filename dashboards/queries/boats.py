@@ -140,7 +140,8 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
 
     Returns:
         Rows of `warehouse.queries.answers.answers` with `races`, `faults`, `causes`, `bars` (see
-        `measure_bars`), `cw_verdict` (same, lower or higher) and `has_moved` since the tow before.
+        `measure_bars`), `cw_verdict` (same, lower or higher), `has_moved` since the tow before,
+        `peers` (Cw of the other boats of its type and class) and the interval of the old number.
     """
     if edition in results.answers:
         return results.answers[edition]
@@ -150,11 +151,25 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     races_by_crew = races.partition_by(CREW, as_dict=True, maintain_order=True)
     # An edition holds no faults of instruments.
     faults = season_faults(results.views) if edition.startswith(DRAFT) else {}
+    ends = ["cw_lo_kg_m", "cw_hi_kg_m"]
+    old_ends = results.register.filter(edition=previous).select(
+        *CREW, "empty_thwart", *(pl.col(name).alias(f"old_{name}") for name in ends)
+    )
+    lines = lines.join(
+        old_ends, on=[*CREW, "empty_thwart"], how="left", maintain_order="left", nulls_equal=True
+    )
+    by_type: dict[tuple[str, str], list[Row]] = {}
+    for line in lines.drop_nulls(["cw_kg_m", "boat_type"]).to_dicts():
+        by_type.setdefault((line["boat_type"], line["crew_class"]), []).append(line)
     by_boat: dict[str, list[Row]] = {}
     for line in lines.to_dicts():
         own = races_by_crew.get(tuple(line[name] for name in CREW), races.head(0)).to_dicts()
         of_season = faults.get((line["method"], line["season"]), [])
-        by_boat.setdefault(line["fsn_no"], []).append(describe_answer(line, own, of_season))
+        answer = describe_answer(line, own, of_season)
+        of_type = by_type.get((line["boat_type"], line["crew_class"]), [])
+        others = [other for other in of_type if other["fsn_no"] != line["fsn_no"]]
+        answer["peers"] = [other["cw_kg_m"] for other in others]
+        by_boat.setdefault(line["fsn_no"], []).append(answer)
     results.answers[edition] = by_boat
     return by_boat
 
