@@ -285,7 +285,7 @@ def _add_tow(
 
 
 NUMBER_ROW_PX: Final = 28
-NUMBER_LABEL_PX: Final = 96
+NUMBER_LABEL_PX: Final = 64
 
 
 def draw_number(language: Language, line: Row, caption: str) -> Markup:
@@ -303,7 +303,7 @@ def draw_number(language: Language, line: Row, caption: str) -> Markup:
     rows = [(say("was"), old, line["old_log_known"]), (say("becomes"), new, line["new_log_known"])]
     shown = [row for row in rows if row[1][0] is not None]
     n_rows = len(shown) + bool(line["peers"])
-    plot = Plot(language, 480, NUMBER_ROW_PX * n_rows + 50, NUMBER_LABEL_PX, 8)
+    plot = Plot(language, 380, NUMBER_ROW_PX * n_rows + 50, NUMBER_LABEL_PX, 8)
     x = plot.fit_x([*old, *new, *line["peers"]])
     for tick in x.ticks:
         plot.add_path(
