@@ -138,10 +138,10 @@ def write_workbook(frame: pl.DataFrame, fields: Sequence[Field], made_on: dt.dat
         fields: the columns of the sheet.
         made_on: what the file says of when it was made, so that equal sheets have equal bytes.
     """
-    target = io.BytesIO()
-    formats: dict[Any, str] = {field.header: _number_format(field) for field in fields}
     import xlsxwriter  # type: ignore[import-untyped,unused-ignore]  # noqa: PLC0415 - 0.15 s
 
+    target = io.BytesIO()
+    formats: dict[Any, str] = {field.header: _number_format(field) for field in fields}
     with xlsxwriter.Workbook(target, {"in_memory": True, **TEXT_STAYS_TEXT}) as book:
         book.set_properties({"created": dt.datetime.combine(made_on, dt.time())})
         _cells(frame, fields).write_excel(
