@@ -10,10 +10,13 @@ from typing import Any, Final
 import polars as pl
 
 from dashboards.queries.results import Data, Results
+from pipeline.method.options import find_basis
+from pipeline.method.variant import differences
 from pipeline.tables.display import STEP_CHANGE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import answers, season_faults, select_own_races
 from warehouse.queries.views import DRAFT, curve_figure
+from warehouse.store.methods import KnownMethods
 
 NEGLIGIBLE_CHANGE: Final = 5e-4
 """A cause that changes Cw by a smaller share is shown as 0.0 %; such causes are summed as one."""
@@ -141,7 +144,8 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     Returns:
         Rows of `warehouse.queries.answers.answers` with `races`, `faults`, `causes`, `bars` (see
         `measure_bars`), `cw_verdict` (same, lower or higher), `has_moved` since the tow before,
-        `peers` (Cw of the other boats of its type and class) and the interval of the old number.
+        `peers` (Cw of the other boats of its type and class), the interval of the old number, and
+        `decided_steps`: those of which nothing is put to the vote.
     """
     if edition in results.answers:
         return results.answers[edition]
@@ -161,6 +165,7 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     by_type: dict[tuple[str, str], list[Row]] = {}
     for line in lines.drop_nulls(["cw_kg_m", "boat_type"]).to_dicts():
         by_type.setdefault((line["boat_type"], line["crew_class"]), []).append(line)
+    decided_steps = find_decided_steps(results, previous, edition)
     by_boat: dict[str, list[Row]] = {}
     for line in lines.to_dicts():
         own = races_by_crew.get(tuple(line[name] for name in CREW), races.head(0)).to_dicts()
@@ -169,9 +174,26 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
         of_type = by_type.get((line["boat_type"], line["crew_class"]), [])
         others = [other for other in of_type if other["fsn_no"] != line["fsn_no"]]
         answer["peers"] = [other["cw_kg_m"] for other in others]
+        answer["decided_steps"] = decided_steps
         by_boat.setdefault(line["fsn_no"], []).append(answer)
     results.answers[edition] = by_boat
     return by_boat
+
+
+def find_decided_steps(results: Results, old: str | None, new: str) -> list[str]:
+    """Return the steps between two drafts of which all that differs was decided before.
+
+    Of an edition everything was decided: none is returned.
+    """
+    if old is None or not (old.startswith(DRAFT) and new.startswith(DRAFT)):
+        return []
+    known = KnownMethods.of(results.views.store)
+    changed = differences(known.get(new.removeprefix(DRAFT)), known.get(old.removeprefix(DRAFT)))
+    is_decided: dict[str, bool] = {}
+    for one in changed:
+        status = find_basis(one.step, one.option, one.after).status
+        is_decided[one.step] = is_decided.get(one.step, True) and status == "decided"
+    return [step for step, decided in is_decided.items() if decided]
 
 
 def describe_answer(line: Row, races: Sequence[Row], faults: Sequence[Row]) -> Row:
