@@ -71,7 +71,7 @@ def samples(
             ", ".join(map(str, listed)),
         )
     nothing = SeasonIndex.create_empty().select(pl.lit(None, pl.Int32).alias("season"), pl.all())
-    before = nothing if store.made_from("samples") is None else store.read("samples")
+    before = nothing if store.read_fingerprint("samples") is None else store.read("samples")
     frames, tasks, seasons_read = [], [], []
     for season in wanted:
         tows = listed_tows.filter(season=season).sort("tow_id")

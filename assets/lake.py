@@ -79,7 +79,7 @@ class Folders(dg.ConfigurableResource["Folders"]):
         """Return the methods to apply; the first is what the others are compared with."""
         listed = self.methods or self.settings.methods
         names = methods_to_apply(self.store, listed)
-        known = KnownMethods.of(self.store)
+        known = KnownMethods.from_store(self.store)
         return [known.get(name) for name in names]
 
 
@@ -153,7 +153,7 @@ def incremental(
                 also,
                 code_hash(*code, compute.__module__),
             )
-            is_made = all(store.made_from(name) == made_from for name in names)
+            is_made = all(store.read_fingerprint(name) == made_from for name in names)
             if read and is_made and is_whole(store):
                 yield from confirm_outputs(store, names)
                 return

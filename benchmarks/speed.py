@@ -141,7 +141,7 @@ def read_text(world: World, tows: pl.DataFrame, folder: Path) -> None:
         own = tows.filter(season=season).select("tow_id")
         listed = world.store.read("listed_tows").join(own, on="tow_id", how="semi")
         runs = world.store.read("listed_runs").join(own, on="tow_id", how="semi")
-        profile = profiles.for_season(season)
+        profile = profiles.find(season)
         index = lake.read_tows(store, world.archive, listed, runs, profile)
         assert index["reason_code"].null_count() == index.height
 

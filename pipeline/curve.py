@@ -77,7 +77,9 @@ class Points:
             )
 
     @classmethod
-    def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:
+    def from_arrays(
+        cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None
+    ) -> Self:
         """Points from anything array-like; one curve may be one row; by default all are used."""
         speed = np.atleast_2d(np.asarray(speed_m_s, dtype=np.float64))
         cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))

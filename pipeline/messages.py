@@ -83,10 +83,10 @@ class Sentence(str):
         if language == "en":
             return str(self)
         known = self.template, self.context, self.plural, self.number
-        return _filled(_looked_up(language, *known), language, self.in_order, self.values)
+        return _fill_in(_look_up(language, *known), language, self.in_order, self.values)
 
 
-def _looked_up(
+def _look_up(
     language: str, template: str, context: str = "", plural: str = "", number: int = 1
 ) -> str:
     catalogue = _catalogue(language)
@@ -97,17 +97,17 @@ def _looked_up(
     return catalogue.gettext(template) if template else ""  # the header goes by no text
 
 
-def _filled(
+def _fill_in(
     text: str, language: str, in_order: tuple[object, ...], values: Mapping[str, object]
 ) -> str:
     if not in_order and not values:
         return text
-    shown = [_in_words(value, language) for value in in_order]
-    named = {name: _in_words(value, language) for name, value in values.items()}
+    shown = [_translate_value(value, language) for value in in_order]
+    named = {name: _translate_value(value, language) for name, value in values.items()}
     return text.format(*shown, **named)
 
 
-def _in_words(value: object, language: str) -> object:
+def _translate_value(value: object, language: str) -> object:
     """Return what is filled in for a value, a number with the decimal mark of the language."""
     if isinstance(value, str | Exception):
         return spoken(value, language)
@@ -123,7 +123,7 @@ def _sentence(
     number: int = 1,
 ) -> Sentence:
     text = plural if plural and number != 1 else template
-    sentence = Sentence(_filled(text, "en", in_order, values))
+    sentence = Sentence(_fill_in(text, "en", in_order, values))
     sentence.template, sentence.in_order, sentence.values = str(template), in_order, values
     sentence.context, sentence.plural, sentence.number = context, plural, number
     return sentence
@@ -156,19 +156,19 @@ def ngettext(one: str, many: str, number: int) -> Sentence:
 
 def speaker(language: str) -> Say:
     """Return a function that gives texts in one language."""
-    return partial(_said_in, language)
+    return partial(_say_in, language)
 
 
-def _said_in(language: str, text: str, *in_order: object, **named: object) -> str:
+def _say_in(language: str, text: str, *in_order: object, **named: object) -> str:
     if isinstance(text, Sentence) and not in_order and not named:
         return text.spoken(language)
-    known = _looked_up(language, text, getattr(text, "context", ""))
-    return _filled(known, language, in_order, named)
+    known = _look_up(language, text, getattr(text, "context", ""))
+    return _fill_in(known, language, in_order, named)
 
 
 def tell(template: str, *in_order: object, **named: object) -> str:
     """Return a text in the language of this command, values and sentences in it filled in."""
-    return _said_in(LANGUAGE.get(), template, *in_order, **named)
+    return _say_in(LANGUAGE.get(), template, *in_order, **named)
 
 
 def number(value: float, form: str) -> str:

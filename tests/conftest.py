@@ -66,7 +66,7 @@ DEMO_METHODS: Final = ("as-published", "rebased-2015", "rebased")
 def leave_out(store: Store, tables: Collection[str]) -> None:
     """Let tables that a rebuild leaves out be there: empty, unless they are."""
     for name in tables:
-        if store.made_from(name) is None:
+        if store.read_fingerprint(name) is None:
             frame = NO_SITE if name == "site" else TABLES[name].create_empty()
             store.write(name, frame)
 

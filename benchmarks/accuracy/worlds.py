@@ -123,7 +123,7 @@ def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataF
 
 def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
     """Tables of an archive as a rebuild makes them; where asked, whether equal boats are alike."""
-    tows = add_doubts(archive.tows, plausibility(Tows.of(archive.tows, archive.blocks)))
+    tows = add_doubts(archive.tows, plausibility(Tows.from_frames(archive.tows, archive.blocks)))
     made = recompute(read_shipped_method(METHOD), tows, archive.blocks, with_bands=False)
     tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
     if equal_boats:

@@ -58,11 +58,11 @@ def read_boat(
     chosen_edition = results.choose_edition(edition)
 
     def own(source: str) -> pl.DataFrame:
-        rows = results.of_boat(source, fsn_no)
+        rows = results.select_boat(source, fsn_no)
         is_per_method = "method" in rows.columns
         return rows.filter(pl.col("method").is_in(shown)) if is_per_method else rows
 
-    boat = results.of_boat("boats", fsn_no).row(0, named=True)
+    boat = results.select_boat("boats", fsn_no).row(0, named=True)
     curves = own("curves").with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
@@ -77,8 +77,8 @@ def read_boat(
         "boat": boat,
         "answers": crews,
         "edition": chosen_edition,
-        "register": _without_repeated_drafts(results.of_boat("register", fsn_no)),
-        "tows": results.of_boat("tows", fsn_no).sort("tow_date", "tow_id"),
+        "register": _leave_out_repeated_drafts(results.select_boat("register", fsn_no)),
+        "tows": results.select_boat("tows", fsn_no).sort("tow_date", "tow_id"),
         "curves": curves,
         "steps": _tabulate_steps(own_steps(results, fsn_no, shown)),
         "runs": runs.with_columns(run_cw_kg_m="cw_kg_m"),
@@ -88,12 +88,12 @@ def read_boat(
         "predicted": own("predicted_cw"),
         "options": own("option_effects").sort(size, descending=True, maintain_order=True),
         "checks": own("flagged"),
-        "hand_windows": results.of_boat("hand_windows", fsn_no),
-        "lineage": results.of_boat("lineage", fsn_no),
+        "hand_windows": results.select_boat("hand_windows", fsn_no),
+        "lineage": results.select_boat("lineage", fsn_no),
         "set_aside": results.views.frame(_SET_ASIDE, fsn_no, boat["name"] or fsn_no).to_dicts(),
         "drawn": {
             "curve": pl.concat(figure.values(), how="diagonal_relaxed"),
-            "seconds": results.of_boat("trace_seconds", fsn_no),
+            "seconds": results.select_boat("trace_seconds", fsn_no),
         },
         "tow_names": tows,
         "chosen": {"tow_id": tow_id or next(reversed(tows), ""), "method": _first(shown, results)},
@@ -107,7 +107,7 @@ def _first(shown: Sequence[str], results: Results) -> str:
 def own_steps(results: Results, fsn_no: str, methods: Sequence[str]) -> pl.DataFrame:
     """Return the rows of `correction_steps` of a boat between these methods."""
     is_shown = pl.col("from_method").is_in(methods) & pl.col("to_method").is_in(methods)
-    return results.of_boat("correction_steps", fsn_no).filter(is_shown)
+    return results.select_boat("correction_steps", fsn_no).filter(is_shown)
 
 
 def _tabulate_steps(steps: pl.DataFrame) -> pl.DataFrame:
@@ -125,7 +125,7 @@ def _tabulate_steps(steps: pl.DataFrame) -> pl.DataFrame:
     return total.join(wide, on=key, how="left", maintain_order="left")
 
 
-def _without_repeated_drafts(register: pl.DataFrame) -> pl.DataFrame:
+def _leave_out_repeated_drafts(register: pl.DataFrame) -> pl.DataFrame:
     """Return lines of a boat without drafts that say what an edition of their method says."""
     same = ["method", "fsn_no", "rowers", "crew_class", "tow_id", "cw_kg_m"]
     is_draft = pl.col("edition").str.starts_with(DRAFT)
@@ -187,7 +187,7 @@ def find_decided_steps(results: Results, old: str | None, new: str) -> list[str]
     """
     if old is None or not (old.startswith(DRAFT) and new.startswith(DRAFT)):
         return []
-    known = KnownMethods.of(results.views.store)
+    known = KnownMethods.from_store(results.views.store)
     changed = differences(known.get(new.removeprefix(DRAFT)), known.get(old.removeprefix(DRAFT)))
     is_decided: dict[str, bool] = {}
     for one in changed:

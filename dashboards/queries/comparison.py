@@ -34,7 +34,7 @@ def compare(
     Raises:
         HerijkError: there is no such method or edition, or it cannot be computed.
     """
-    known, published = KnownMethods.of(store), edition_names(store)
+    known, published = KnownMethods.from_store(store), edition_names(store)
     sides = [
         read_edition(store, name)
         if name in published
@@ -44,7 +44,7 @@ def compare(
     before, after = (side.method if isinstance(side, Edition) else side for side in sides)
     options = [] if before is None or after is None else list(differences(after, before))
     data: Data = {"old": old, "new": new, "options": options, "effect": None}
-    if not {old, new} <= {*published} and store.made_from("tows") is None:
+    if not {old, new} <= {*published} and store.read_fingerprint("tows") is None:
         return data
     is_of_a_day = as_of is not None or {old, new} & {*published}
     counting = ("valid",) if is_of_a_day else ("valid", "expired")

@@ -25,7 +25,7 @@ def read_method(results: Results, name: str) -> Data:
     Raises:
         MissingKnowledgeError: there is no such method.
     """
-    known = KnownMethods.of(results.views.store)
+    known = KnownMethods.from_store(results.views.store)
     first = known.get(results.views.table("methods")["method"][0])
     shown = known.get(name)
     ladder = results.views.table("correction_steps").filter(from_method=first.name, to_method=name)

@@ -255,7 +255,7 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
     part = pl.col("part") + 1  # as people count
     parts = views.table("season_links").with_columns(part)
     divided = parts.filter(method=chosen).filter(pl.col("part") > 1)
-    spread = with_named_ends(results.rows("reproducibility"))
+    spread = name_ends(results.rows("reproducibility"))
     diagnosis = views.ask("season_diagnosis")
     is_level = pl.col("instrument") == SEASON_LEVEL
     is_in_doubt = ~pl.col("verdict").is_in(SOUND_VERDICTS)
@@ -283,7 +283,7 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
     }
 
 
-def with_named_ends(spread: pl.DataFrame) -> pl.DataFrame:
+def name_ends(spread: pl.DataFrame) -> pl.DataFrame:
     """Return rows of `reproducibility` whose interval says of what it is: of `sd_ratio`."""
     return spread.rename({"lo": "sd_lo_ratio", "hi": "sd_hi_ratio"})
 
@@ -295,7 +295,7 @@ def sum_up_repeats(spread: pl.DataFrame, method: str) -> Data:
     a gain of the method.
 
     Args:
-        spread: rows of `with_named_ends`.
+        spread: rows of `name_ends`.
         method: the other.
 
     Returns:

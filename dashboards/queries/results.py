@@ -96,7 +96,7 @@ class Results:
             raise make_unknown_edition_error(chosen, names)
         return chosen
 
-    def of_boat(self, source: str, fsn_no: str) -> pl.DataFrame:
+    def select_boat(self, source: str, fsn_no: str) -> pl.DataFrame:
         """Return the rows of a table or question about a boat."""
         by_boat = self._split_by_boat(source)
         return by_boat.get(fsn_no, by_boat[""])

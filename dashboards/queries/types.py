@@ -10,7 +10,7 @@ from typing import Final
 import polars as pl
 
 from dashboards.addresses import boat_path
-from dashboards.queries.pages import with_named_ends
+from dashboards.queries.pages import name_ends
 from dashboards.queries.results import Data, Results
 from pipeline.consistency.types import QUANTITIES, TERM_NAMES
 from pipeline.tables.row import Row
@@ -176,7 +176,7 @@ def compare_types(results: Results, types: Sequence[str], methods: Sequence[str]
             method: find_type_differences(*(_select(one, method) for one in found))
             for method in methods
         },
-        "reproducibility": with_named_ends(spread),
+        "reproducibility": name_ends(spread),
     }
 
 

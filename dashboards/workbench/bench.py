@@ -14,7 +14,7 @@ from urllib.parse import urlencode
 from pydantic import BaseModel, ConfigDict, StringConstraints, ValidationError
 
 from dashboards import words
-from dashboards.queries.pages import sum_up_repeats, with_named_ends
+from dashboards.queries.pages import name_ends, sum_up_repeats
 from dashboards.queries.results import Data
 from dashboards.workbench.form import CONTROLS, Control
 from pipeline.errors import HerijkError
@@ -83,7 +83,7 @@ class Bench:
 
     def __init__(self, store: Store, history: History) -> None:
         self.store, self.history = store, history
-        self.known = KnownMethods.of(store)
+        self.known = KnownMethods.from_store(store)
         self.seasons: Sequence[int] = history.tows["season"].unique().sort().to_list()
         self.boats = history.boats.join(history.tows, on="fsn_no", how="semi").sort(
             "name", "fsn_no"
@@ -115,7 +115,7 @@ class Bench:
             HerijkError: an option cannot have such a value, or there is no such method.
         """
         steps = tuple(
-            SeasonSteps(first=r.first, last=r.last, steps=_with_changes(r, asked.changes))
+            SeasonSteps(first=r.first, last=r.last, steps=_add_changes(r, asked.changes))
             for r in self.list_ranges(asked)
         )
         return variant(self.known.get(asked.base), name, title, reason, steps)
@@ -132,7 +132,7 @@ class Bench:
         """
         scenario = self.compare_drafts(asked)
         curves = scenario.boat_curves(asked.boat)
-        spread = with_named_ends(scenario.both(lambda draft: draft.reproducibility))
+        spread = name_ends(scenario.both(lambda draft: draft.reproducibility))
         return {
             "lines": scenario.register_lines,
             "summary": scenario.summary(),
@@ -182,7 +182,7 @@ class Bench:
         return self.known.get(name)
 
 
-def _with_changes(block: SeasonSteps, changes: Mapping[str, str]) -> Steps:
+def _add_changes(block: SeasonSteps, changes: Mapping[str, str]) -> Steps:
     """Return the steps of a range of seasons, changed for all seasons and then for these."""
     for_all = [name for name in changes if name.count(".") == 1]
     here = [name for name in changes if name.endswith(f".{block.first}")]

@@ -67,7 +67,7 @@ def audit(
         show_lineage(store, str(edition), names[0])  # an edition says this by itself
         return
     if method is not None:
-        KnownMethods.of(store).text(method)
+        KnownMethods.from_store(store).text(method)
 
     from dashboards.queries.results import Results
     from warehouse.queries.views import Views
@@ -146,7 +146,7 @@ def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> No
     today = dt.date.today()
     edition = None if method else latest_before(store, today, today)
     in_force = None if edition is None else read_edition(store, edition).method
-    chosen = in_force or KnownMethods.of(store).get(method or STUDIED_METHOD)
+    chosen = in_force or KnownMethods.from_store(store).get(method or STUDIED_METHOD)
     found = tows.assess(store, archive, tow_id, chosen)
     data = describe_tow(found, log_known=chosen.interval == COMPLETE)
     show("tow", data, TOW_FIELDS)

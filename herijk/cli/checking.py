@@ -69,7 +69,7 @@ def _list_findings(store: Store) -> Iterator[Finding]:
     free = shutil.disk_usage(nearest).free
     said = tell("{:.1f} GB free at {}", free / 2**30, nearest)
     yield Finding(say("disk"), free >= MIN_FREE_BYTES, said)
-    known = KnownMethods.of(store)
+    known = KnownMethods.from_store(store)
     yield _look_at(say("settings"), lambda: tell("applies {}", ", ".join(applied(store.root))))
     for name in known.own:
         yield _look_at(tell("method {}", name), lambda: known.get(name).title)  # noqa: B023

@@ -113,7 +113,7 @@ def proposal(
     name = "-".join(("proposal", *methods))
     letter = {"sender": sender, "date": date, "valid_from": valid_from}
     with documents(store.root, name), Views(store) as views:
-        known = KnownMethods.of(store)
+        known = KnownMethods.from_store(store)
         titles = {method: known.get(method).get_title(LANGUAGE.get()) for method in methods}
         made = read_proposal(views, methods, against, titles, letter)
         simulated = views.about().get("simulated") == "true"

@@ -33,7 +33,7 @@ def methods(context: click.Context, store: "Store") -> None:
         return
     from warehouse.store.methods import KnownMethods
 
-    known = KnownMethods.of(store)
+    known = KnownMethods.from_store(store)
     rows = [
         {
             "method": method.name,
@@ -68,7 +68,7 @@ def _describe(store: "Store", name_or_file: str) -> dict[str, Any]:
     from dashboards.queries.methods import describe_method
     from warehouse.store.methods import KnownMethods
 
-    return describe_method(KnownMethods.of(store), name_or_file, LANGUAGE.get())
+    return describe_method(KnownMethods.from_store(store), name_or_file, LANGUAGE.get())
 
 
 @methods.command()
@@ -82,7 +82,7 @@ def new(name: str, base: str, store: "Store") -> None:
     from warehouse.store.files import write_new
     from warehouse.store.methods import KnownMethods
 
-    known = KnownMethods.of(store)
+    known = KnownMethods.from_store(store)
     file = Path(f"{name}.toml")
     if name in known.names:
         raise HerijkError("{} is the name of another method; choose another", name)

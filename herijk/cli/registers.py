@@ -80,7 +80,7 @@ def _choose_method(store: "Store", edition: str | None) -> str | None:
 
     if edition in edition_names(store):
         return read_edition_method(store, edition).name
-    return KnownMethods.of(store).get(edition.removeprefix(draft_name(""))).name
+    return KnownMethods.from_store(store).get(edition.removeprefix(draft_name(""))).name
 
 
 @click.command(cls=Command)
@@ -93,7 +93,7 @@ def seasons(store: "Store", method: str | None) -> None:
     from warehouse.store.methods import KnownMethods
 
     if method is not None:
-        KnownMethods.of(store).text(method)
+        KnownMethods.from_store(store).text(method)
     fields = ("method", "simulated", "factors", "parts", "diagnosis")
     show_results(store, "season_list", lambda results: pages.read_seasons(results, method), fields)
 
@@ -130,7 +130,7 @@ def publish(
     if printed is not None:
         folder = editions.publish_printed(store, printed, terms)
     else:
-        chosen = KnownMethods.of(store).get(str(method))
+        chosen = KnownMethods.from_store(store).get(str(method))
         folder = editions.publish(store, chosen, terms, carry)
     made = editions.published(store, folder)
     data = vars(made) | {"simulated": made.manifest.simulated}

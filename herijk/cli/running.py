@@ -38,8 +38,8 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     from warehouse.queries.reports import rebuild_report
     from warehouse.store.methods import KnownMethods
 
-    known = KnownMethods.of(store)
-    chosen = applied(store.root, [known.kept(name) for name in methods])
+    known = KnownMethods.from_store(store)
+    chosen = applied(store.root, [known.keep(name) for name in methods])
     try:
         with explain_machine_faults(store.root), rebuild_shown():
             news = run(archive, store.root, chosen, seasons)

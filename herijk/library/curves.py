@@ -177,7 +177,7 @@ def fit(
         raise HerijkError("{} speeds and {} values; give as many of each", speed.size, values.size)
     if not (np.isfinite(speed) & np.isfinite(values) & (speed > 0) & (values > 0)).all():
         raise HerijkError("every speed and every force must be a positive number")
-    points = hyperbola.Points.of(speed, values / speed**2 if cw_kg_m is None else values)
+    points = hyperbola.Points.from_arrays(speed, values / speed**2 if cw_kg_m is None else values)
     fitted = hyperbola.fit(points)
     if not fitted.converged[0]:
         raise HerijkError("the points determine no curve; at least two different speeds are needed")

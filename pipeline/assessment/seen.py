@@ -77,7 +77,7 @@ class Seen:
             for name in ("force", "log1_v", "log1_cw", "wind_x", "wind_y", "wind_v")
         } | {"air": _air_kg_m(tows, whole)}
         good = tows.selected & (mean["log1_v"] > 0) & (mean["log1_cw"] > 0)
-        speed = np.log(np.where(good, mean["log1_v"], 1.0) / tows.of_run("declared_speed_m_s"))
+        speed = np.log(np.where(good, mean["log1_v"], 1.0) / tows.get_of_runs("declared_speed_m_s"))
         # A force or wind in another unit may leave less than nothing of the water's part.
         water = np.maximum(mean["log1_cw"] - mean["air"], LEAST_WATER * mean["log1_cw"])
         ln_cw = np.log(np.where(good, water, 1.0))
@@ -122,7 +122,7 @@ def _season_gps(tows: Tows, log_m_s: FloatArray, runs: BoolArray) -> FloatArray:
 
 def _air_kg_m(tows: Tows, whole: WindowSums) -> FloatArray:
     """Most of the air's part of Cw, shape (runs,)."""
-    front = front_area_m2(tows.of_run("beam_m"), tows.of_run("bow_height_m"))
+    front = front_area_m2(tows.get_of_runs("beam_m"), tows.get_of_runs("bow_height_m"))
     felt = sum(whole.mean(f"log1_head_{way}") for way in ("ahead", "behind"))
     return np.asarray(0.5 * AIR_DENSITY_KG_M3 * DRAG * front * felt)
 
@@ -146,21 +146,23 @@ def _expected_level(tows: Tows) -> FloatArray:
     """The ln Cw that size alone predicts, at the level that the archive's median power gives."""
     size = _ln_size(tows)
     power = np.array([POWER_W[c] for c in tows.frame["crew_class"]])
-    by_power = np.log(power * tows.of_tow("rowers") / tows.of_tow("declared_speed_m_s") ** 3)
+    by_power = np.log(
+        power * tows.get_of_tows("rowers") / tows.get_of_tows("declared_speed_m_s") ** 3
+    )
     return np.asarray(size + np.median(by_power - size)) if tows.size else size
 
 
 def _ln_size(tows: Tows) -> FloatArray:
     """Half ln(displacement x waterline length), which wetted surface follows."""
-    displacement = tows.of_tow("weight_kg") + tows.of_tow("crew_weight_kg")
-    ln = 0.5 * np.log(displacement * tows.of_tow("waterline_length_m"))
+    displacement = tows.get_of_tows("weight_kg") + tows.get_of_tows("crew_weight_kg")
+    ln = 0.5 * np.log(displacement * tows.get_of_tows("waterline_length_m"))
     known = np.isfinite(ln)
     return np.where(known, ln, np.median(ln[known]) if known.any() else 0.0)
 
 
 def _median(tows: Tows, values: FloatArray, runs: BoolArray) -> FloatArray:
     """Median of each tow's marked runs; NaN without any."""
-    rows = np.where(tows.by_tow(runs) > 0, tows.by_tow(values), np.nan)
+    rows = np.where(tows.group_by_tow(runs) > 0, tows.group_by_tow(values), np.nan)
     none = ~tows.any(runs)
     rows[none] = 0.0
     return np.where(none, np.nan, np.nanmedian(rows, axis=1))

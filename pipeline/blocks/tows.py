@@ -46,7 +46,7 @@ class Tows:
     tow: IntArray
 
     @classmethod
-    def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> Self:
+    def from_frames(cls, tows: pl.DataFrame, blocks: RunBlocks) -> Self:
         """Return the given tows, with their runs among the given ones."""
         tows = pl.concat([tows, NOT_ALWAYS_KNOWN], how="diagonal_relaxed").sort("tow_id")
         mine = blocks.take(blocks.runs["tow_id"].is_in(tows["tow_id"].implode()).to_numpy())
@@ -63,7 +63,7 @@ class Tows:
         """Tows with GPS fixes in selected runs, both out and back, shape (tows,)."""
         return self.both_ways(self.selected & (self.blocks["gps_n"].sum(axis=1) > 0))
 
-    def of_tow(self, column: str) -> FloatArray:
+    def get_of_tows(self, column: str) -> FloatArray:
         """Return a number of each tow, shape (tows,); NaN where it is not known."""
         return self._columns[column]
 
@@ -72,13 +72,15 @@ class Tows:
         frame = self.frame
         return OnDemand(frame.columns, lambda name: frame[name].cast(pl.Float64).to_numpy())
 
-    def of_run(self, column: str) -> FloatArray:
+    def get_of_runs(self, column: str) -> FloatArray:
         """Return a number of each run's tow, shape (runs,); NaN where it is not known."""
-        return self.of_tow(column)[self.tow]
+        return self.get_of_tows(column)[self.tow]
 
     def measured(self, channel: str) -> BoolArray:
         """Tows that have a channel, `wind` or `log2`, shape (tows,)."""
-        return np.asarray(self.of_tow(f"{channel}_measured") != 0.0)  # also where it is not known
+        return np.asarray(
+            self.get_of_tows(f"{channel}_measured") != 0.0
+        )  # also where it is not known
 
     @cached_property
     def trusted(self) -> BoolArray:
@@ -148,7 +150,7 @@ class Tows:
         first = np.searchsorted(self.tow, self.tow, side="left")
         return np.asarray(np.arange(len(self.tow)) - first, dtype=np.int64)
 
-    def by_tow(self, values: FloatArray | BoolArray) -> FloatArray:
+    def group_by_tow(self, values: FloatArray | BoolArray) -> FloatArray:
         """Return a run quantity per tow, shape (tows, most runs of a tow); 0 without a run."""
         place = self.place
         rows = np.zeros((self.size, int(place.max(initial=0)) + 1))

@@ -105,11 +105,11 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.Da
     scopes = pl.DataFrame([every, *eras], ["scope", "first", "last"], orient="row")
     key, difference, n = ["method", "scope"], pl.col("ln_ratio"), pl.len()
 
-    def of_scopes(rows: pl.DataFrame, season: str) -> GroupBy:
+    def select_scopes(rows: pl.DataFrame, season: str) -> GroupBy:
         there = pl.col(season).is_between("first", "last")
         return rows.join(scopes, how="cross").filter(there).group_by(key, maintain_order=True)
 
-    pairs = of_scopes(repeat_pairs, "season_before").agg(
+    pairs = select_scopes(repeat_pairs, "season_before").agg(
         n_pairs=n,
         sd_ratio=((difference**2).sum() / (2 * n)).sqrt(),
         chained=pl.col("tow_id_before").is_in(pl.col("tow_id").implode()).sum(),
@@ -117,7 +117,7 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.Da
         share_within_2pct=(difference.abs() < 0.02).mean(),
     )
     run_variance = pl.col("run_rss_ratio2").sum() / pl.col("run_dof").sum()
-    tows = of_scopes(observed, "season").agg(
+    tows = select_scopes(observed, "season").agg(
         n_tows=n, within_sd_ratio=(run_variance * pl.col("c0_unit_variance").mean()).sqrt()
     )
     found = observed.select("method").unique(maintain_order=True).join(scopes, how="cross")

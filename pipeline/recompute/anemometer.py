@@ -54,7 +54,7 @@ def correct_anemometers(c: Computed) -> Computed:
     )
     ln_scale = np.where(is_asked, tows["ln_scale"].to_numpy(), 0.0)
     sd = np.where(is_asked, tows["sd"].to_numpy(), np.nan)
-    means = c.means.with_wind(np.exp(ln_scale)[c.tows.tow])
+    means = c.means.scale_wind(np.exp(ln_scale)[c.tows.tow])
     air = replace(c.air, anemometer_ln_scale=ln_scale, anemometer_ln_sd=sd)
     return replace(c, means=means, air=air)
 

@@ -67,7 +67,7 @@ def pure_error_of(c: Computed) -> curve.Scatter:
     error: Draper & Smith 1998, ch. 2).
     """
     residual, is_used, on_curve = _residuals(c)
-    x = c.points.speed_m_s / c.tows.of_tow("declared_speed_m_s")[:, None] - 1.0
+    x = c.points.speed_m_s / c.tows.get_of_tows("declared_speed_m_s")[:, None] - 1.0
     design = np.where(is_used[..., None], np.stack([np.ones_like(x), x, x**2], axis=2), 0.0)
     parabola = (design @ (np.linalg.pinv(design) @ residual[..., None]))[..., 0]
     return _pool(c, residual - parabola, is_used, on_curve, PARABOLA_PARAMETERS)
@@ -101,12 +101,12 @@ def files_log_sd(c: Computed) -> FloatArray:
     half as far. Pooled over the season's combined tows; 0 for others, and where each is calibrated.
     """
     residual, is_used, _ = _residuals(c)
-    is_second = c.tows.by_tow(c.tows.in_second_file.astype(np.float64)) > 0
+    is_second = c.tows.group_by_tow(c.tows.in_second_file.astype(np.float64)) > 0
     in_first, in_second = is_used & ~is_second, is_used & is_second
     is_combined = in_first.any(axis=1) & in_second.any(axis=1) & ~c.speed.is_calibrated
     first_mean = (residual * in_first).sum(axis=1) / np.maximum(in_first.sum(axis=1), 1)
     second_mean = (residual * in_second).sum(axis=1) / np.maximum(in_second.sum(axis=1), 1)
-    r = np.clip(c.free.s_s2_m2 * c.tows.of_tow("declared_speed_m_s") ** 2, -1.0, MAX_R)
+    r = np.clip(c.free.s_s2_m2 * c.tows.get_of_tows("declared_speed_m_s") ** 2, -1.0, MAX_R)
     kappa = 2.0 / (1.0 - r)
     ln_log_difference = np.where(is_combined, (second_mean - first_mean) / kappa, 0.0)
     combined_tows = np.maximum(np.bincount(c.season_group, is_combined), 1)
@@ -168,9 +168,9 @@ def _boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, Flo
     by_tow = fit_parabolas(
         residual,
         is_used & tows.trusted[:, None],
-        c.points.speed_m_s / tows.of_tow("declared_speed_m_s")[:, None],
-        tows.by_tow(tows.direction.astype(np.float64)),
-        tows.by_tow(tows.target_speed_ratio),
+        c.points.speed_m_s / tows.get_of_tows("declared_speed_m_s")[:, None],
+        tows.group_by_tow(tows.direction.astype(np.float64)),
+        tows.group_by_tow(tows.target_speed_ratio),
         speed_ratios,
         c.plan.which,
     )
@@ -180,7 +180,7 @@ def _boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, Flo
 
 def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
     """Return the relative random uncertainty of Cw at a speed / declared speed, (tows,)."""
-    speed = speed_ratio * c.tows.of_tow("declared_speed_m_s")
+    speed = speed_ratio * c.tows.get_of_tows("declared_speed_m_s")
     variance = curve.covariance(c.points, c.free, scatter, speed).c0_variance_kg2_m2
     cw = c.free.cw_at(speed)
     is_known = np.isfinite(cw) & np.isfinite(variance)
@@ -198,14 +198,14 @@ def _facts_at_any_speed(
     tow_log_sd = np.zeros(tows.size)
     if factors is not None:
         usual_bend = _median_bends(c)
-        log_sd = np.hypot(factors.tow_log_sd_of(tows.of_tow("season")), files_log_sd(c))
+        log_sd = np.hypot(factors.tow_log_sd_of(tows.get_of_tows("season")), files_log_sd(c))
         tow_log_sd = np.where(c.speed.is_calibrated, 0.0, log_sd)
     bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual_bend)
 
     net_air = c.air_kg_m - c.still_air_kg_m
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_per_unit = c.still_air_kg_m / np.maximum(c.air.drag.still, 1e-9)
-    felt_per_unit = c.by_true_speed(c.means.air.ahead + c.means.air.behind)
+    felt_per_unit = c.refer_to_true_speed(c.means.air.ahead + c.means.air.behind)
     return tows.frame.select(
         "tow_id",
         "season",
@@ -233,7 +233,7 @@ def _facts_at_any_speed(
 
 def _median_bends(c: Computed) -> FloatArray:
     """Return the median of q at the declared speed over the tows with the same steps, (tows,)."""
-    r = c.free.s_s2_m2 * c.tows.of_tow("declared_speed_m_s") ** 2
+    r = c.free.s_s2_m2 * c.tows.get_of_tows("declared_speed_m_s") ** 2
     is_known = c.free.converged & (r > 0.0) & (r < 1.0)
     q = pl.Series(np.where(is_known, r / np.where(is_known, 1.0 - r, 1.0), np.nan)).fill_nan(None)
     bends = pl.DataFrame({"steps": c.plan.which, "q": q})

@@ -114,7 +114,7 @@ class Computed:
     @cached_property
     def season_group(self) -> IntArray:
         """Group of each tow; tows of one season under the same steps share one, shape (tows,)."""
-        pairs = np.stack([self.plan.which, self.tows.of_tow("season")])
+        pairs = np.stack([self.plan.which, self.tows.get_of_tows("season")])
         return np.unique(pairs, axis=1, return_inverse=True)[1].ravel()
 
     def estimated(self, name: str) -> FloatArray:
@@ -139,7 +139,7 @@ class Computed:
         """Mean true speed, shape (runs,)."""
         return self.means.speed_m_s * self.speed_factor
 
-    def by_true_speed(self, kg_m: FloatArray) -> FloatArray:
+    def refer_to_true_speed(self, kg_m: FloatArray) -> FloatArray:
         """Return a coefficient by log speed of each run as one by true speed, shape (runs,)."""
         return kg_m / self.speed_factor**2
 
@@ -161,12 +161,14 @@ class Computed:
     @cached_property
     def water_off_c(self) -> FloatArray:
         """How far the water is from its day's, where the method corrects for it, shape (tows,)."""
-        return self.tows.of_tow("water_off_c") * self.options.corrects_temperature
+        return self.tows.get_of_tows("water_off_c") * self.options.corrects_temperature
 
     @cached_property
     def still_unit_kg_m(self) -> FloatArray:
         """Still-air coefficient for a drag coefficient of 1, shape (runs,)."""
-        front = front_area_m2(self.tows.of_run("beam_m"), self.tows.of_run("bow_height_m"))
+        front = front_area_m2(
+            self.tows.get_of_runs("beam_m"), self.tows.get_of_runs("bow_height_m")
+        )
         return still_air_coefficient_kg_m(front, 1.0)
 
     @cached_property
@@ -182,7 +184,7 @@ class Computed:
     def air_with(self, drag: Drag) -> FloatArray:
         """Return the air part that is taken off with given coefficients, shape (runs,)."""
         side = self.plan.run_options.wind.side
-        felt = self.by_true_speed(self.means.air.total(drag.ahead, drag.behind, side))
+        felt = self.refer_to_true_speed(self.means.air.total(drag.ahead, drag.behind, side))
         is_missing = self.options.expects_unrecorded & ~self.tows.measured("wind")
         net_ratio = self.air.unrecorded_ratio[self.tows.tow]
         expected = (1.0 + net_ratio) * self.still_unit_kg_m * drag.ahead
@@ -204,8 +206,8 @@ class Computed:
 
     def cw_with(self, drag: Drag) -> FloatArray:
         """Return the corrected coefficient of each run with given drag, shape (runs,)."""
-        gross = self.by_true_speed(self.means.gross_kg_m)
-        inertia = self.by_true_speed(self.means.inertia_kg_m)
+        gross = self.refer_to_true_speed(self.means.gross_kg_m)
+        inertia = self.refer_to_true_speed(self.means.inertia_kg_m)
         net_air = self.air_with(drag) - self.still_unit_kg_m * drag.still
         return gross - inertia - net_air + self.temperature.change_kg_m
 
@@ -218,9 +220,9 @@ class Computed:
         """Return points of all tows that have enough runs, for a batch fit."""
         is_used = self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)
         return curve.Points(
-            speed_m_s=self.tows.by_tow(self.speed_m_s),
-            cw_kg_m=self.tows.by_tow(cw_kg_m),
-            used=self.tows.by_tow(is_used) > 0,
+            speed_m_s=self.tows.group_by_tow(self.speed_m_s),
+            cw_kg_m=self.tows.group_by_tow(cw_kg_m),
+            used=self.tows.group_by_tow(is_used) > 0,
         )
 
     @cached_property
@@ -231,7 +233,7 @@ class Computed:
     @cached_property
     def curves(self) -> curve.Curves:
         """The hyperbola that the method chooses, shape (tows,)."""
-        hull_speed = hull_speed_m_s(self.tows.of_tow("waterline_length_m"))
+        hull_speed = hull_speed_m_s(self.tows.get_of_tows("waterline_length_m"))
         capped = curve.fit_capped(self.points, self.free, CAP_HULL_SPEEDS * hull_speed)
         return curve.chosen(self.options.caps_b, capped, self.free)
 
@@ -243,5 +245,5 @@ class Computed:
     def cw_at(self, speed_ratio: float, curves: curve.Curves | None = None) -> FloatArray:
         """Return Cw at a speed / declared speed, shape (tows,); NaN where there is none."""
         chosen = self.curves if curves is None else curves
-        cw = chosen.cw_at(speed_ratio * self.tows.of_tow("declared_speed_m_s"))
+        cw = chosen.cw_at(speed_ratio * self.tows.get_of_tows("declared_speed_m_s"))
         return np.where(chosen.converged & np.isfinite(cw), cw, np.nan)

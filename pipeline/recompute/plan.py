@@ -47,7 +47,7 @@ class Plan:
         Raises:
             MissingKnowledgeError: the method says nothing about a season of `tows`.
         """
-        known = Tows.of(add_expected_water(tows), blocks)
+        known = Tows.from_frames(add_expected_water(tows), blocks)
         known = replace(known, frame=add_expected_mass(known.frame))
         seasons = known.frame["season"].to_list()
         has_gps = known.has_gps.tolist()
@@ -88,7 +88,7 @@ class Plan:
             found = {name: np.where(rows, own[name], found.get(name, own[name])) for name in own}
         return found
 
-    def with_steps(self, change: Callable[[Steps], Steps]) -> Self:
+    def replace_steps(self, change: Callable[[Steps], Steps]) -> Self:
         """Return a plan of the same tows with changed steps."""
         return replace(self, steps=tuple(change(steps) for steps in self.steps))
 

@@ -26,7 +26,7 @@ from pipeline.recompute.computed import (
     TemperatureCorrection,
 )
 from pipeline.recompute.plan import Plan, leave_out_factor
-from pipeline.recompute.results import Recomputed, as_tables
+from pipeline.recompute.results import Recomputed, build_tables
 from pipeline.recompute.run_cache import RunCache
 from pipeline.recompute.season_factors import find_season_factors, instruments_of
 from pipeline.run_reasons import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_CALIBRATED, NOT_SELECTED
@@ -72,7 +72,7 @@ def recompute(
     plan = Plan.from_method(method, tows, blocks, cache)
     estimated = estimate_season_factors(plan) if method.estimates_logs else None
     computed = evaluate(plan, None if estimated is None else estimated.tows)
-    return as_tables(method, computed, estimated, with_bands)
+    return build_tables(method, computed, estimated, with_bands)
 
 
 def estimate_season_factors(plan: Plan) -> SeasonFactors | None:
@@ -81,7 +81,7 @@ def estimate_season_factors(plan: Plan) -> SeasonFactors | None:
     Returns:
         None if not a single tow has a curve from which to estimate.
     """
-    as_read = evaluate(plan.with_steps(leave_out_factor))
+    as_read = evaluate(plan.replace_steps(leave_out_factor))
     if not (np.isfinite(as_read.cw_at_declared) & as_read.tows.trusted).any():
         return None
     return find_season_factors(as_read)
@@ -134,7 +134,7 @@ def average_runs(plan: Plan, windows: dict[str, Any], instruments: pl.DataFrame)
     )
     force_factor = instruments["force_factor"].to_numpy()[plan.tows.tow]
     force_zero_n = instruments["force_zero_n"].to_numpy()[plan.tows.tow]
-    return means.with_force(
+    return means.correct_force(
         options.run.force_ratio * force_factor, options.run.force_ratio * force_zero_n
     )
 
@@ -154,7 +154,7 @@ def correct_speed(
     factor = log_factor(
         options.correction,
         options.factor,
-        tow_list_ratio=tows.of_tow("speed_correction_ratio"),
+        tow_list_ratio=tows.get_of_tows("speed_correction_ratio"),
         estimated_factor=instruments["factor"].cast(pl.Float64).to_numpy(),
     )
     is_measured = tows.selected & has_window

@@ -71,7 +71,7 @@ class Recomputed:
     factors: SeasonFactors | None
 
 
-def as_tables(
+def build_tables(
     method: Method,
     c: Computed,
     estimated: SeasonFactors | None,
@@ -111,7 +111,7 @@ def as_tables(
         ),
         curve_points=named(_curve_points(facts, bounds)) if with_bands else pl.DataFrame(),
         season_diagnosis=named(diagnosis),
-        **{table: named(rows) for table, rows in _of_all_tows(estimated).items()},
+        **{table: named(rows) for table, rows in _tabulate_estimates(estimated).items()},
         factors=estimated,
     )
 
@@ -130,16 +130,16 @@ def _run_points(c: Computed) -> pl.DataFrame:
         "window_end_s": windows["end_s"],
         "speed_factor": c.speed_factor,
         "speed_m_s": c.speed_m_s,
-        "gross_cw_kg_m": c.by_true_speed(means.gross_kg_m),
-        "inertia_cw_kg_m": c.by_true_speed(means.inertia_kg_m),
+        "gross_cw_kg_m": c.refer_to_true_speed(means.gross_kg_m),
+        "inertia_cw_kg_m": c.refer_to_true_speed(means.inertia_kg_m),
         "air_cw_kg_m": c.air_kg_m,
         "still_air_cw_kg_m": c.still_air_kg_m,
         "temperature_cw_kg_m": c.temperature.change_kg_m,
         "wind_coefficient_ahead": c.air.drag.ahead,
         "wind_coefficient_behind": c.air.drag.behind,
         "cw_kg_m": c.cw_kg_m,
-        "cw_sd": c.by_true_speed(means.sd_kg_m),
-        "cw_seconds_sd_kg_m": c.by_true_speed(means.seconds_sd_kg_m),
+        "cw_sd": c.refer_to_true_speed(means.sd_kg_m),
+        "cw_seconds_sd_kg_m": c.refer_to_true_speed(means.seconds_sd_kg_m),
         "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
         "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
         "log2_ratio": np.where(log2, log2_ratio, np.nan),
@@ -160,7 +160,7 @@ def _run_points(c: Computed) -> pl.DataFrame:
 
 def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     tows = c.tows.frame
-    declared = c.tows.of_tow("declared_speed_m_s")
+    declared = c.tows.get_of_tows("declared_speed_m_s")
     cw = c.cw_at_declared
     sound = np.isfinite(cw)
     mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
@@ -177,7 +177,7 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
         "cw_hi_kg_m": cw * hi,
         "b_lo_m_s": np.where(own_b, b_interval.lo, np.nan),
         "b_hi_m_s": np.where(own_b, b_interval.hi, np.nan),
-        "power_w": power_per_rower_w(safe_cw, declared, c.tows.of_tow("rowers")),
+        "power_w": power_per_rower_w(safe_cw, declared, c.tows.get_of_tows("rowers")),
         "residual_sd_ratio": residual,
     }
     return tows.select(
@@ -211,12 +211,12 @@ def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
     ln_factor = np.where(
         c.speed.is_calibrated, np.log(c.speed.log_factor * c.calibration_factor), np.nan
     )
-    season, which = c.tows.of_tow("season"), c.plan.which
+    season, which = c.tows.get_of_tows("season"), c.plan.which
     rows: list[tuple[int, *Factor]] = []
     for year in c.tows.frame["season"].unique().sort():
         first = which[season == year].min()
         if c.plan.steps[first].calibration.rule == "none":
-            found = _of_season(c.plan.steps[first], year, estimated)
+            found = _find_factor(c.plan.steps[first], year, estimated)
         else:
             found = _mean_factor(ln_factor[(season == year) & (which == first)])
         rows.append((year, *found))
@@ -227,7 +227,7 @@ Factor = tuple[float, float | None, float | None, str]
 """A factor with its interval and source."""
 
 
-def _of_season(steps: Steps, season: int, estimated: SeasonFactors | None) -> Factor:
+def _find_factor(steps: Steps, season: int, estimated: SeasonFactors | None) -> Factor:
     """Return the factor where tows are not calibrated on GPS: estimated, prescribed or none."""
     is_asked = estimated is not None and steps.speed.correction == "estimated"
     if estimated is not None and is_asked and (known := estimated.of_season(season)) is not None:
@@ -251,7 +251,7 @@ def _mean_factor(ln_factor: FloatArray) -> Factor:
     return factor, lo, hi, "gps"
 
 
-def _of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
+def _tabulate_estimates(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
     """Return the tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
     schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
     if estimated is None:

@@ -94,7 +94,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
         ln_factor: what is known of the ln factor of each tow's log.
     """
     tows = c.tows
-    declared = tows.of_tow("declared_speed_m_s")
+    declared = tows.get_of_tows("declared_speed_m_s")
     line_speed = tows.frame.select(pl.col("declared_speed_m_s").median().over(LINE))
     true_speed = line_speed.to_series().to_numpy()
     reference_ln = np.array([ln_factor.get(name, 0.0) for name in tows.frame["tow_id"]])
@@ -161,7 +161,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
 
 def _water_points(c: Computed) -> curve.Points:
     """Return run points of the water alone: still air does not scale with the log's error."""
-    water = c.tows.by_tow(c.cw_kg_m - c.still_air_kg_m)
+    water = c.tows.group_by_tow(c.cw_kg_m - c.still_air_kg_m)
     return curve.Points(c.points.speed_m_s, water, c.points.used & (water > 0))
 
 

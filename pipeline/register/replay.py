@@ -67,7 +67,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     Raises:
         MissingKnowledgeError: a race time outside what is known of fatigue.
     """
-    rowed = _with_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
+    rowed = _add_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
     through_water = rowed["distance_m"] - rowed["stream_m"].fill_null(0.0)
     speed = mean_speed_m_s(through_water, rowed["rowing_time_s"])
     a, s = find_line_curves(rowed)
@@ -97,7 +97,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     )
 
 
-def _with_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
+def _add_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
     """Results with the line that counted on their day, or `without`: why there is none.
 
     A result that names no empty thwart was rowed with all manned, where the boat has such a line;

@@ -70,12 +70,12 @@ class RunMeans:
     wind_m_s: FloatArray
     wind_angle_deg: FloatArray
 
-    def with_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
+    def correct_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
         """Return these means for a load cell that reads true force x factor + zero, (runs,)."""
         zero = zero_n / _or_one(self.speed_m_s) ** 2
         return replace(self, gross_kg_m=(self.gross_kg_m - zero) / factor)
 
-    def with_wind(self, scale: FloatArray) -> "RunMeans":
+    def scale_wind(self, scale: FloatArray) -> "RunMeans":
         """Return these means for an anemometer that reads the wind x scale, shape (runs,)."""
         return replace(self, air=self.air.times(scale**-2.0))
 
@@ -177,8 +177,8 @@ def run_means(
         air=air_parts(
             oblique,
             term,
-            front_area_m2(tows.of_run("beam_m"), tows.of_run("bow_height_m")),
-            side_area_m2(tows.of_run("waterline_length_m"), tows.of_run("bow_height_m")),
+            front_area_m2(tows.get_of_runs("beam_m"), tows.get_of_runs("bow_height_m")),
+            side_area_m2(tows.get_of_runs("waterline_length_m"), tows.get_of_runs("bow_height_m")),
         ),
         gps_m_s=np.where(fixes > 0, over["gps"] / np.where(fixes > 0, fixes, 1.0), np.nan),
         log2_m_s=over["log2_v"],
@@ -192,7 +192,7 @@ def accelerated_mass_kg(tows: Tows) -> FloatArray:
 
     0 where no tow of the archive has a weight. Source: docs/method-details.md, 6.
     """
-    return (1.0 + ADDED_MASS_RATIO) * np.nan_to_num(tows.of_run("mass_kg"))
+    return (1.0 + ADDED_MASS_RATIO) * np.nan_to_num(tows.get_of_runs("mass_kg"))
 
 
 def temperature_change_kg_m(
@@ -212,14 +212,14 @@ def temperature_change_kg_m(
         Change of Cw, shape (runs,), kg/m, 0 without a temperature, or where no tow of the archive
         has a weight; and for which tows the temperature was recorded and used, shape (tows,).
     """
-    recorded_c = tows.of_tow("water_temperature_c")
-    mass_kg = tows.of_tow("mass_kg")
+    recorded_c = tows.get_of_tows("water_temperature_c")
+    mass_kg = tows.get_of_tows("mass_kg")
     is_recorded = np.isfinite(recorded_c) & np.isfinite(mass_kg)
-    day_c = np.where(expected, tows.of_tow("expected_water_c"), np.nan)
+    day_c = np.where(expected, tows.get_of_tows("expected_water_c"), np.nan)
     temperature_c = np.where(is_recorded, recorded_c, day_c)
     has_change = corrected & np.isfinite(temperature_c) & np.isfinite(mass_kg)
     celsius = np.where(has_change, temperature_c, REFERENCE_WATER_C)
-    length = tows.of_run("waterline_length_m")
+    length = tows.get_of_runs("waterline_length_m")
     surface = wetted_surface_m2(np.where(has_change, mass_kg, 0.0)[tows.tow], length)
     speed = _or_one(speed_m_s)
     at_reference, as_towed = (

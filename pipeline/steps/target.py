@@ -28,7 +28,7 @@ def above_target(
         runs: runs that take part, shape (runs,).
         highest_ratio: limit of speed / declared speed, of each run or of all.
     """
-    speed = np.where(runs & (log_m_s > 0), log_m_s / tows.of_run("declared_speed_m_s"), np.nan)
+    speed = np.where(runs & (log_m_s > 0), log_m_s / tows.get_of_runs("declared_speed_m_s"), np.nan)
     ratios = pl.DataFrame(
         {"tow": tows.tow, "intended": tows.target_speed_ratio, "speed": speed}, nan_to_null=True
     ).with_columns(highest=highest_ratio)

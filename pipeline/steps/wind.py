@@ -102,13 +102,13 @@ def average_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
     """Return the blocks with the sums of their air terms as `averaged_terms` gives them."""
     terms = averaged_terms(blocks, averaging_s)
 
-    def made(name: str) -> FloatArray:
+    def compute(name: str) -> FloatArray:
         if name in AIR_SUMS:
             return terms[name] * blocks.n
         source, _, term = name.partition("_")
         return terms[term] * blocks[f"{source}_inv_v2"] if term in AIR_SUMS else blocks[name]
 
-    return replace(blocks, sums=OnDemand(blocks.sums.keys(), made))
+    return replace(blocks, sums=OnDemand(blocks.sums.keys(), compute))
 
 
 def _centred_sum(values: FloatArray, width: int) -> FloatArray:

@@ -78,7 +78,7 @@ def option_effects(
     can = pl.Series(plan.options.speed.correction == "prescribed")
     names = [name for name in CHOICES if name != FACTOR or can.any()]
     crossed = {name: (name, CHOICES[name]) for name in names if name != B}
-    capped = plan.with_steps(lambda steps: chosen(steps, {B: "capped"}))
+    capped = plan.replace_steps(lambda steps: replace_options(steps, {B: "capped"}))
     frames = [
         _curves(one, of_b).with_columns(_flags(flags | {B: of_b is one.free}))
         for flags, one in _combinations(capped, crossed, links)
@@ -86,7 +86,7 @@ def option_effects(
     ]
     is_estimated = pl.Series(plan.options.speed.correction == "estimated")
     own_log = plan.tows.frame["tow_id"].filter(~is_estimated)
-    whole = _whole(pl.concat(frames), ["tow_id"], len(names)).filter(
+    whole = _select_complete(pl.concat(frames), ["tow_id"], len(names)).filter(
         pl.col("tow_id").is_in(own_log.implode())
     )
     prescribed = plan.tows.frame["tow_id"].filter(can)
@@ -136,7 +136,7 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
         Rows as of `option_effects`, options named as in `TICKS` and `SPEEDS`; of speeds under which
         every combination gives a curve.
     """
-    whole = _whole(curves, ["tow_id", "speed"], len(TICKS))
+    whole = _select_complete(curves, ["tow_id", "speed"], len(TICKS))
     ticks = [_effect(whole, name) for name in TICKS]
     pairs = [
         _effect(whole.filter(pl.col("speed").is_in(pair)), name, pl.col("speed") == pair[1])
@@ -158,19 +158,19 @@ def _speeds(plan: Plan) -> Iterator[tuple[str, pl.Series, Plan]]:
 def _speeds_of(steps: Steps) -> dict[str, Steps]:
     """Return the log as it reads, and each way in which a method makes a true speed of it."""
     as_read, no_gps = {"speed.correction": "none"}, {"calibration.rule": "none"}
-    ways = {AS_READ: chosen(steps, as_read | no_gps)}
+    ways = {AS_READ: replace_options(steps, as_read | no_gps)}
     if steps.calibration.rule != "none":
-        ways[DGPS] = chosen(steps, as_read)
+        ways[DGPS] = replace_options(steps, as_read)
     if steps.speed.correction == "estimated":
         ways[ESTIMATED] = steps
     if steps.speed.correction == "prescribed":
         # Multiply by 1 + p, or divide by 1 - p.
-        ways[MULTIPLY] = chosen(steps, no_gps)
-        ways[DIVIDE] = chosen(steps, no_gps | {FACTOR: 1.0 / (2.0 - steps.speed.factor)})
+        ways[MULTIPLY] = replace_options(steps, no_gps)
+        ways[DIVIDE] = replace_options(steps, no_gps | {FACTOR: 1.0 / (2.0 - steps.speed.factor)})
     return ways
 
 
-def chosen(steps: Steps, values: Mapping[str, object]) -> Steps:
+def replace_options(steps: Steps, values: Mapping[str, object]) -> Steps:
     """Return the steps of a season with other values of some options."""
     for name, value in values.items():
         step, option = name.split(".")
@@ -188,12 +188,12 @@ def _combinations(
     for corner in itertools.product((False, True), repeat=len(crossed)):
         flags = dict(zip(crossed, corner, strict=True))
         values = {crossed[name][0]: crossed[name][1][on] for name, on in flags.items()}
-        yield flags, evaluate(plan.with_steps(partial(chosen, values=values)), links)
+        yield flags, evaluate(plan.replace_steps(partial(replace_options, values=values)), links)
 
 
 def _from_length(computed: Computed) -> curve.Curves:
     """Return the curves whose B is hull speed."""
-    hull = hull_speed_m_s(computed.tows.of_tow("waterline_length_m"))
+    hull = hull_speed_m_s(computed.tows.get_of_tows("waterline_length_m"))
     return curve.fit_given_b(computed.points, hull)
 
 
@@ -217,7 +217,7 @@ def _flags(flags: Mapping[str, bool]) -> list[pl.Expr]:
     return [pl.lit(value).alias(name) for name, value in flags.items()]
 
 
-def _whole(curves: pl.DataFrame, key: list[str], choices: int) -> pl.DataFrame:
+def _select_complete(curves: pl.DataFrame, key: list[str], choices: int) -> pl.DataFrame:
     """Curves of the tows of which every combination gives one, with `ln_cw`."""
     every = pl.len().over(key) == 2**choices
     return curves.filter(every).with_columns(ln_cw=pl.col("cw_kg_m").log())

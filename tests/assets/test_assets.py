@@ -206,4 +206,4 @@ def test_dask_workers_read_an_archive_although_one_is_killed(built, tmp_path):
     found = {name: frame for name, frame in bench.tables().items() if name != "about"}
     expected = {name: frame for name, frame in built.tables().items() if name != "about"}
     assert_same_tables(found, expected)
-    assert Store(bench.data).made_from("site") is not None
+    assert Store(bench.data).read_fingerprint("site") is not None

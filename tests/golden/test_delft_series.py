@@ -44,7 +44,7 @@ def points(series):
     weight_n = friction.water_density_kg_m3(WATER_C) * GRAVITY_M_S2 * volume
     residuary_n = series["residuary_resistance_per_1000_displacement_weight"] / 1000 * weight_n
     rubbing = friction.friction_cw_kg_m(speed, WATERLINE_M, surface, WATER_C)
-    return curve.Points.of(speed, rubbing + residuary_n / speed**2)
+    return curve.Points.from_arrays(speed, rubbing + residuary_n / speed**2)
 
 
 def window(points, series, lowest, highest):

@@ -60,7 +60,7 @@ def with_two_files() -> dict[str, pl.DataFrame]:
         world_settings("two-files", seasons=(2010, 2014), tows_per_season=8, rate_hz=10, seed=3)
     )
     made = recompute(read_shipped_method("rebased"), world.tows, world.blocks)
-    seen = vars(Seen(Tows.of(world.tows, world.blocks)))
+    seen = vars(Seen(Tows.from_frames(world.tows, world.blocks)))
     arrays = {name: pl.Series(values) for name, values in seen.items() if name != "tows"}
     return frames(made) | {"seen": pl.DataFrame(arrays).fill_nan(None)}
 

@@ -10,7 +10,7 @@ from tests.golden.sources import read_table
 def test_a_drag_without_a_bend_has_a_height_and_no_b():
     rows = read_table("unh_rm2_tare_drag.csv")
     speed = np.array([float(row["tow_speed_m_per_s"]) for row in rows])
-    points = curve.Points.of(speed, [float(row["tare_drag_N"]) for row in rows] / speed**2)
+    points = curve.Points.from_arrays(speed, [float(row["tare_drag_N"]) for row in rows] / speed**2)
     assert points.cw_kg_m.min() == pytest.approx(46.5, abs=0.05)
     assert points.cw_kg_m.max() == pytest.approx(52.3, abs=0.05)
     fitted = curve.fit(points)

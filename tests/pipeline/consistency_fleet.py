@@ -141,7 +141,7 @@ def fleet(
 
 
 def _fitted(speed, cw, v0, tow_sd):
-    points = curve.Points.of(speed, cw)
+    points = curve.Points.from_arrays(speed, cw)
     fitted = curve.fit(points)
     scatter = curve.own_scatter(fitted)
     at = fitted.cw_at(v0)

@@ -21,7 +21,7 @@ def noisy_points(seed, n_fits, r=(0.1, 0.45), noise=(0.01, 0.03)):
     speed = v0[:, None] * RUN_RATIOS * rng.normal(1.0, 0.005, (n_fits, 6))
     error = rng.uniform(*noise, (n_fits, 1)) * rng.normal(size=(n_fits, 6))
     cw = curve.cw(a[:, None], s[:, None], speed) * (1 + error)
-    return curve.Points.of(speed, cw), c0, s, v0
+    return curve.Points.from_arrays(speed, cw), c0, s, v0
 
 
 def scipy_fit(speed, cw):
@@ -79,12 +79,12 @@ def test_a_curve_does_not_depend_on_its_batch(monkeypatch):
     ],
 )
 def test_points_that_determine_no_curve_are_flagged_and_flat(speed, cw):
-    fitted = curve.fit(curve.Points.of(speed, cw))
+    fitted = curve.fit(curve.Points.from_arrays(speed, cw))
     assert not fitted.converged[0]
     assert not fitted.b_determined[0]
     assert fitted.a_kg_m[0] == pytest.approx(np.mean(cw))
     assert fitted.s_s2_m2[0] == 0.0
-    points = curve.Points.of(speed, cw)
+    points = curve.Points.from_arrays(speed, cw)
     scatter = curve.own_scatter(fitted)
     assert curve.b_interval(points, fitted, scatter).hi[0] == np.inf
     assert curve.cw_interval(points, fitted, scatter, 2.5) == (0.0, np.inf)
@@ -99,7 +99,7 @@ def test_a_search_that_does_not_come_to_rest_gives_no_curve(monkeypatch):
 
 
 def test_two_points_are_interpolated_and_have_unbounded_intervals():
-    points = curve.Points.of([2.0, 3.0], [20.0, 30.0])
+    points = curve.Points.from_arrays([2.0, 3.0], [20.0, 30.0])
     fitted = curve.fit(points)
     assert curve.cw(fitted.a_kg_m, fitted.s_s2_m2, [2.0, 3.0]) == pytest.approx([20.0, 30.0])
     scatter = curve.own_scatter(fitted)
@@ -196,5 +196,5 @@ def test_a_used_point_that_is_no_measurement_is_refused(bad):
     cw = np.array([[30.0, 31.0, 32.0], [30.0, bad, 32.0]])
     speed = np.full((2, 3), [2.0, 2.5, 3.0])
     with pytest.raises(BrokenPromiseError, match="first is curve 1"):
-        curve.Points.of(speed, cw)
-    assert curve.fit(curve.Points.of(speed, cw, np.isin(cw, bad, invert=True) & (cw > 0)))
+        curve.Points.from_arrays(speed, cw)
+    assert curve.fit(curve.Points.from_arrays(speed, cw, np.isin(cw, bad, invert=True) & (cw > 0)))

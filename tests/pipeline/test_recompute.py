@@ -213,8 +213,8 @@ def test_a_curve_needs_four_runs_and_both_ways(measured, left_out, status):
 
 @pytest.mark.parametrize(("out", "dropped"), [(1.1495, False), (1.155, True)])
 def test_runs_out_and_back_stay_or_go_together(measured, out, dropped):
-    batch = Tows.of(measured.tows, measured.blocks)
-    intended = batch.of_run("declared_speed_m_s") * batch.target_speed_ratio
+    batch = Tows.from_frames(measured.tows, measured.blocks)
+    intended = batch.get_of_runs("declared_speed_m_s") * batch.target_speed_ratio
     top = batch.target_speed_ratio == 1.1
     towed = np.where(batch.direction > 0, out, 1.1608) / 1.1
     everything = np.ones(len(batch.tow), dtype=bool)

@@ -354,7 +354,7 @@ def with_few_repeats(seed, season, repeats, setup=CLEAN, others=5):
     return kept.with_columns(known.otherwise("fsn_no").alias("fsn_no")), repeated
 
 
-def with_force(tows, season, ratios):
+def correct_force(tows, season, ratios):
     """Tows of a season whose force is multiplied, per boat."""
     factor = pl.col("fsn_no").replace_strict(ratios, default=1.0, return_dtype=pl.Float64)
     moved = pl.when(season=season).then(factor.log()).otherwise(0.0)
@@ -372,7 +372,7 @@ def unexplained_in(found, season):
 def test_one_repeat_boat_does_not_tell_a_load_cell_from_an_altered_boat(ratio, others):
     """A force 12 to 25 % off in the only repeat tow printed the old Cw again, without a word."""
     tows, (boat,) = with_few_repeats(1, 2018, 1, others=others)
-    moved = with_force(tows, 2018, {boat: ratio})
+    moved = correct_force(tows, 2018, {boat: ratio})
     before, after = (estimate_season_factors(rows) for rows in (tows, moved))
     mine = (pl.col("fsn_no") == boat) & (pl.col("season") == 2018)
     assert (after.tows["force_factor"] == 1.0).all()
@@ -409,7 +409,7 @@ def test_one_repeat_boat_does_not_tell_a_load_cell_from_an_altered_boat(ratio, o
 @pytest.mark.parametrize("seed", [1, 4])
 def test_a_load_cell_takes_two_boats_and_three_where_they_disagree(ratios, verdict, seed):
     tows, boats = with_few_repeats(seed, 2018, len(ratios))
-    moved = with_force(tows, 2018, dict(zip(boats, ratios, strict=True)))
+    moved = correct_force(tows, 2018, dict(zip(boats, ratios, strict=True)))
     found = estimate_season_factors(moved)
     unexplained = unexplained_in(found, 2018)
     assert [row["verdict"] for row in unexplained.values()] == [verdict] * (verdict is not None)
@@ -430,7 +430,7 @@ def test_the_search_settles_where_one_boat_alone_was_towed_twice(seed, ratio):
     tows, (boat,) = with_few_repeats(seed, 2018, 1, HARD)
     recent = tows.filter(pl.col("season") >= 2014)
     once = pl.when(pl.col("fsn_no") != boat).then("tow_id").otherwise("fsn_no").alias("fsn_no")
-    found = estimate_season_factors(with_force(recent.with_columns(once), 2018, {boat: ratio}))
+    found = estimate_season_factors(correct_force(recent.with_columns(once), 2018, {boat: ratio}))
     assert "not settled" not in set(found.diagnosis["verdict"])
 
 
@@ -451,7 +451,7 @@ def test_a_log_that_two_boats_alone_tell_neither_drifted_nor_was_replaced():
 def test_a_change_far_below_what_is_assumed_is_no_alarm(seed):
     """One repeat boat says nearly nothing of a load cell: 0.01 % of force stood 300 sd off."""
     tows, (boat,) = with_few_repeats(seed, 2018, 1)
-    found = estimate_season_factors(with_force(tows, 2018, {boat: math.exp(0.06)})).diagnosis
+    found = estimate_season_factors(correct_force(tows, 2018, {boat: math.exp(0.06)})).diagnosis
     cell = found.row(by_predicate=FORCE_OF_2018, named=True)
     assert abs(cell["estimate"]) < 0.5 * PRIORS.force_sd
     assert abs(cell["distance_sd"]) < 4.0

@@ -50,7 +50,7 @@ def contains(outer, inner):
 
 @given(declared_speeds, heights, bends)
 def test_exact_data_are_recovered(v0, c0, r):
-    fitted = curve.fit(curve.Points.of(*exact_points(v0, c0, r)))
+    fitted = curve.fit(curve.Points.from_arrays(*exact_points(v0, c0, r)))
     found_c0, found_q = c0_and_q(fitted, v0)
     assert fitted.converged[0]
     assert found_c0[0] == pytest.approx(c0, rel=1e-10)
@@ -64,8 +64,8 @@ def test_masking_a_point_is_dropping_it(v0, c0, r, error, keep):
     speed, cw = exact_points(v0, c0, r)
     cw = cw * (1 + error)
     junk = np.where(used, cw, np.nan)
-    masked_points = curve.Points.of(speed, junk, used)
-    dropped_points = curve.Points.of(speed[used], cw[used])
+    masked_points = curve.Points.from_arrays(speed, junk, used)
+    dropped_points = curve.Points.from_arrays(speed[used], cw[used])
     masked, dropped = curve.fit(masked_points), curve.fit(dropped_points)
     assert masked.n_points[0] == used.sum()
     assert masked.a_kg_m[0] == pytest.approx(dropped.a_kg_m[0], rel=1e-9)
@@ -83,7 +83,7 @@ def test_a_log_error_is_undone_in_closed_form(v0, c0, r, error, log_error):
     speed, cw = exact_points(v0, c0, r)
     cw = cw * (1 + error)
     shown_speed, shown_cw = speed * (1 + log_error), cw / (1 + log_error) ** 2
-    fitted = curve.fit(curve.Points.of([speed, shown_speed], [cw, shown_cw]))
+    fitted = curve.fit(curve.Points.from_arrays([speed, shown_speed], [cw, shown_cw]))
     if not fitted.b_determined.all():
         return  # the closed form is about register lines, which have a B
     a, b = fitted.a_kg_m, fitted.b_m_s
@@ -97,11 +97,11 @@ def test_a_log_error_is_undone_in_closed_form(v0, c0, r, error, log_error):
 def test_points_nearer_to_their_curve_never_widen_an_interval(v0, c0, r, error, share):
     # Shrinking the residuals leaves the least-squares curve where it is.
     speed, cw = exact_points(v0, c0, r)
-    points = curve.Points.of(speed, cw * (1 + error))
+    points = curve.Points.from_arrays(speed, cw * (1 + error))
     fitted = curve.fit(points)
     on_curve = curve.cw(fitted.a_kg_m[:, None], fitted.s_s2_m2[:, None], points.speed_m_s)
     nearer_cw = on_curve + share * (points.cw_kg_m - on_curve)
-    nearer = curve.Points.of(points.speed_m_s, nearer_cw)
+    nearer = curve.Points.from_arrays(points.speed_m_s, nearer_cw)
     refitted = curve.fit(nearer)
     assert c0_and_q(refitted, v0)[0] == pytest.approx(c0_and_q(fitted, v0)[0], rel=1e-8)
     wide = bounds_of_everything(points, fitted, curve.own_scatter(fitted), v0)
@@ -118,7 +118,7 @@ def test_points_nearer_to_their_curve_never_widen_an_interval(v0, c0, r, error, 
 )
 def test_no_input_gives_nan_or_a_warning(speed, cw, used, cap):
     # Warnings are errors in the test configuration, so this also proves their absence.
-    points = curve.Points.of(speed, cw, used)
+    points = curve.Points.from_arrays(speed, cw, used)
     for fitted in (
         curve.fit(points),
         curve.fit_capped(points, curve.fit(points), cap),

@@ -32,14 +32,14 @@ def test_without_files_there_are_those_that_ship(known):
 
 
 def test_a_file_is_kept_under_its_name(known, tmp_path):
-    assert known.kept(write(tmp_path / "draft.toml", OWN)) == "ours"
+    assert known.keep(write(tmp_path / "draft.toml", OWN)) == "ours"
     assert known.own == ("ours",)
     assert known.get("ours").for_season(2010).wind.side == 0.3
-    assert known.kept("ours") == "ours"
+    assert known.keep("ours") == "ours"
 
 
 def test_one_own_method_extends_another(known, tmp_path):
-    known.kept(write(tmp_path / "draft.toml", OWN))
+    known.keep(write(tmp_path / "draft.toml", OWN))
     child = OWN.replace('"ours"', '"theirs"').replace("rebased-2015", "ours").replace("0.3", "0.4")
     method = known.named(write(tmp_path / "child.toml", child))
     assert method.for_season(2010).wind.side == 0.4
@@ -55,7 +55,7 @@ def test_one_own_method_extends_another(known, tmp_path):
 )
 def test_a_file_that_cannot_be_used_is_refused(known, tmp_path, text, encoding, says):
     with pytest.raises(HerijkError, match=says):
-        known.kept(write(tmp_path / "draft.toml", text, encoding))
+        known.keep(write(tmp_path / "draft.toml", text, encoding))
     assert known.own == ()
 
 

@@ -97,7 +97,7 @@ def test_a_log_replaced_within_a_season_is_seen_as_a_part_and_doubts_no_tow():
     """Logs may differ by 6 %: the joint model needs these tows to say by how much."""
     size = {"seasons": (2010, 2015), "tows_per_season": 12, "rate_hz": 10, "seed": 3}
     world = measure(world_settings("log-replaced", **size))
-    judged = plausibility(Tows.of(world.tows, world.blocks))
+    judged = plausibility(Tows.from_frames(world.tows, world.blocks))
     speeds = [s for s in judged if s.quantity == "speed"]
     assert [s.kind for s in speeds if s.clear] == ["part"]
     assert add_doubts(world.tows, speeds)["doubts"].list.len().sum() == 0
@@ -114,7 +114,7 @@ def wind_changed(world, tows: list[str], **factors: float) -> list[Shift]:
         for name, values in world.blocks.sums.items()
     }
     blocks = replace(world.blocks, sums=sums)
-    shifts = plausibility(Tows.of(world.tows, blocks))
+    shifts = plausibility(Tows.from_frames(world.tows, blocks))
     return [s for s in shifts if s.quantity in ("wind", "vane") and s.clear]
 
 
@@ -130,7 +130,7 @@ def test_gusts_of_a_windy_season_are_no_fault_and_another_unit_is(seed):
     )
     world = measure(settings)
     assert wind_changed(world, []) == []
-    true_wind = Seen(Tows.of(world.tows, world.blocks)).true_wind
+    true_wind = Seen(Tows.from_frames(world.tows, world.blocks)).true_wind
     middle = int(true_wind.argsort()[len(true_wind) // 2])
     tow = world.tows["tow_id"].sort()[middle]
     in_knots = dict.fromkeys(("wind_x", "wind_y", "wind_v"), 1.9438445)

@@ -126,9 +126,9 @@ def _faults_in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
     for file in list_files(root):
         if file.kind != SAMPLES or not file.inside or file.path in not_listed:
             continue
-        profile = index.profiles.for_season(file.season)
+        profile = index.profiles.find(file.season)
         if file.path in of_one_run or profile.runs != "column":
-            profile = profile.with_optional_run()
+            profile = profile.make_run_optional()
         try:
             check_header(file.full_path, profile)
         except BaseException as error:
@@ -143,7 +143,7 @@ def _faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iter
             continue
         done.add(tow["season"])
         try:
-            profile = index.profiles.for_season(tow["season"])
+            profile = index.profiles.find(tow["season"])
             samples, place, defects = read_tow_samples(root, tow, profile)
             planned = index.runs.filter(tow_id=tow["tow_id"])["run"]
             if not {*samples["run"].unique()} <= {*planned}:

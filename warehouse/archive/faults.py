@@ -56,7 +56,7 @@ class Fault:
         """What faults of one cause share."""
         return find_cause(self.message)
 
-    def as_row(self) -> Row:
+    def to_row(self) -> Row:
         """Return the fault as a row of `Faults`: only here it is worded in Dutch too."""
         words = {"cause": self.cause, "message_nl": spoken(self.message, "nl")}
         facts = [fact.name for fact in fields(Fault) if fact.name != "ask"]
@@ -87,7 +87,7 @@ class DefectiveFileError(DefectiveHeaderError):
 
 def fault_frame(faults: Iterable[Fault]) -> dy.DataFrame[Faults]:
     """Faults as they are stored."""
-    return frame_of(Faults, [fault.as_row() for fault in faults])
+    return frame_of(Faults, [fault.to_row() for fault in faults])
 
 
 def say_at_line(line: int, what: str) -> Sentence:

@@ -100,7 +100,7 @@ def index_archive(
     window_rows = read_window_lists(files, profiles, listed.select("season", "tow_id"))
     recordings = find_recordings(window_rows, profiles)
     selections = check_tows(rows, samples, boats, profiles, checks, burned, recordings)
-    tows = rows.as_table(ListedTows)
+    tows = rows.to_table(ListedTows)
     runs = plan_runs(tows, selections, profiles)
     windows = check_hand_windows(window_rows, runs)
 
@@ -158,7 +158,7 @@ def _find_unlisted_samples(
     for tow_id, season, *cells in listed.select(
         "tow_id", "season", "file", "second_file"
     ).iter_rows():
-        plan, profile = profiles.find_plan(tow_id or "", season), profiles.for_season(season)
+        plan, profile = profiles.find_plan(tow_id or "", season), profiles.find(season)
         for cell in filter(None, cells):
             named |= {fold_file_name(cell), *name_run_files(cell, profile, plan).values()}
     message = say("No row of a tow list names this file.")

@@ -152,7 +152,7 @@ def find_recordings(rows: Rows, profiles: Profiles) -> dict[str, str]:
     seasons = [
         season
         for season in rows.frame["season"].unique()
-        if profiles.for_season(season).runs == "windows"
+        if profiles.find(season).runs == "windows"
     ]
     tow, run = pl.col("tow_id"), pl.col("run")
     is_recording = pl.col("season").is_in(seasons)
@@ -201,7 +201,7 @@ def check_hand_windows(rows: Rows, runs: pl.DataFrame) -> pl.DataFrame:
     text = say("run {run} of tow {tow} has more than one window; none of them counts.")
     is_twice = pl.struct("tow_id", "run").is_duplicated()
     rows.drop(is_twice, text, "window_given_twice", run=run, tow=tow)
-    return rows.as_table(ListedWindows)
+    return rows.to_table(ListedWindows)
 
 
 def _drop_out_of_order(rows: Rows) -> None:
@@ -254,7 +254,7 @@ def read_force_checks(files: Iterable[ArchiveFile], profiles: Profiles) -> _Read
     ratio = pl.col("reading_n") / (pl.col("weight_kg") * GRAVITY_M_S2)
     own_sd = pl.when(pl.len() >= FEWEST_READINGS).then(ratio.std()).otherwise(ONE_READING_SD)
     sd = (own_sd**2 / pl.len() + WEIGHT_SD**2).sqrt()
-    days = rows.as_table(FORCE_CHECKS.table).group_by("season", "day", maintain_order=True)
+    days = rows.to_table(FORCE_CHECKS.table).group_by("season", "day", maintain_order=True)
     return days.agg(load_cell_ratio=ratio.mean(), load_cell_sd=sd).sort("day"), rows.faults
 
 
@@ -265,7 +265,7 @@ def read_lamps(files: Iterable[ArchiveFile], profiles: Profiles, tow_ids: pl.Ser
     text, tow = say("sleep_id {tow} is not in the tow list of that year."), pl.col("tow_id")
     rows.drop(~tow.is_in(tow_ids.implode()), text, tow=tow)
     _drop_out_of_order(rows)
-    burned = rows.as_table(LAMPS.table).group_by("tow_id", "run", maintain_order=True)
+    burned = rows.to_table(LAMPS.table).group_by("tow_id", "run", maintain_order=True)
     of_run = burned.agg(burned_s=(pl.col("end_s") - pl.col("start_s")).sum())
     of_tow = of_run.group_by("tow_id", maintain_order=True).agg(pl.col("burned_s").max())
     return of_tow, rows.faults
@@ -300,7 +300,7 @@ def _read_with_boats(
         rows = read_lists(own, kind, known)
         name_boats(rows, boats)
         check(rows)
-        return rows.as_table(kind.table), rows.faults
+        return rows.to_table(kind.table), rows.faults
 
     return read_within_border(kind, files, read)
 

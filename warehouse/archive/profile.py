@@ -89,12 +89,12 @@ class SeasonProfile:
     groups: tuple[str, ...] = ()
     skip_below_header: int = 0
 
-    def with_optional_run(self) -> "SeasonProfile":
+    def make_run_optional(self) -> "SeasonProfile":
         """Return the profile of files that need no column `run`."""
         columns = (replace(c, required=c.required and c.key != "run") for c in self.columns)
         return replace(self, columns=tuple(columns))
 
-    def without_run(self) -> "SeasonProfile":
+    def leave_out_run(self) -> "SeasonProfile":
         """Return the profile of files whose runs are told in another way than by a column."""
         return replace(self, columns=tuple(c for c in self.columns if c.key != "run"))
 
@@ -313,7 +313,7 @@ class Profiles(_Strict):
     def _season_profiles(self) -> dict[int, SeasonProfile]:
         return {}
 
-    def for_season(self, season: int) -> SeasonProfile:
+    def find(self, season: int) -> SeasonProfile:
         """Return the profile of a season; the project's default where none is given."""
         if season not in self._season_profiles:
             table = _ProfileTable(seasons=f"{season}")  # type: ignore[arg-type]

@@ -162,7 +162,7 @@ class Rows:
         is_other = pl.col(day).dt.year() != pl.col("season")
         self.drop(is_other, text, code, day=pl.col(day), season=pl.col("season"))
 
-    def as_table(self, table: type[dy.Schema]) -> pl.DataFrame:
+    def to_table(self, table: type[dy.Schema]) -> pl.DataFrame:
         """Return the rows as a table; the year of a list was not held against its limits yet."""
         if self.frame.is_empty():
             return table.create_empty()

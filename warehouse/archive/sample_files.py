@@ -514,7 +514,7 @@ def _read_tdms(path: Path, profile: SeasonProfile, header_only: bool = False) ->
     for run, group in _assign_groups(groups, profile):
         channels = group.channels()
         names = [_build_channel_header(channel) for channel in channels]
-        columns = _find_known(names, profile.without_run() if run else profile)
+        columns = _find_known(names, profile.leave_out_run() if run else profile)
         if header_only:
             continue
         frame = _read_group(path, group.name, channels, columns, profile)

@@ -174,7 +174,7 @@ def read_samples(
         DefectiveInputError: the first fault that costs the whole file, with its line.
     """
     has_run_column = run is None and profile.runs != "windows"
-    table = read_table(path, profile if has_run_column else profile.with_optional_run())
+    table = read_table(path, profile if has_run_column else profile.make_run_optional())
     row_of: IntArray | None = None
     if has_run_column:
         raw = _fill_runs(table.frame)

@@ -85,7 +85,7 @@ def _add_windows(rows: Rows, recordings: Mapping[str, str], profiles: Profiles) 
     windows = pl.col("tow_id").replace_strict(recordings, default=None, return_dtype=pl.String)
     rows.frame = rows.frame.with_columns(run_windows=windows)
     is_recording = _look_up(
-        rows, "season", lambda season: profiles.for_season(season).runs == "windows", pl.Boolean()
+        rows, "season", lambda season: profiles.find(season).runs == "windows", pl.Boolean()
     )
     text = say(
         "tow {tow} is one recording, and nobody says where its runs are: give begin and end of "
@@ -179,7 +179,7 @@ def _add_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl.
     together: dict[tuple[int, str], dict[str, Any]] = {}
     facts = rows.frame.select("tow_id", "season", "file", "second_file")
     for tow_id, season, *cells in facts.iter_rows():
-        plan, profile = profiles.find_plan(tow_id, season), profiles.for_season(season)
+        plan, profile = profiles.find_plan(tow_id, season), profiles.find(season)
         for cell_text in filter(None, cells):
             names = name_run_files(cell_text, profile, plan)
             parts = {run: known[season, name] for run, name in names.items()
@@ -310,16 +310,16 @@ def _add_season(rows: Rows, profiles: Profiles) -> None:
     facts: dict[str, Any] = {"day": pl.col("tow_date"), "reason": reason}
     rows.drop(reason.is_not_null(), text, "day_set_aside", **facts)
 
-    def of_season(read: Callable[[SeasonProfile], object], dtype: pl.DataType) -> pl.Expr:
-        return _look_up(rows, "season", lambda season: read(profiles.for_season(season)), dtype)
+    def look_up_season(read: Callable[[SeasonProfile], object], dtype: pl.DataType) -> pl.Expr:
+        return _look_up(rows, "season", lambda season: read(profiles.find(season)), dtype)
 
     def count_changes(log: str) -> pl.Expr:
         return _look_up(rows, "tow_date", partial(profiles.count_log_changes, log), pl.Int32())
 
-    rate = of_season(lambda profile: profile.sample_rate_hz, pl.Float64())
+    rate = look_up_season(lambda profile: profile.sample_rate_hz, pl.Float64())
     rows.frame = rows.frame.with_columns(
-        wind_measured=of_season(lambda profile: "wind" not in profile.absent, pl.Boolean()),
-        log2_measured=of_season(lambda profile: "log2" not in profile.absent, pl.Boolean()),
+        wind_measured=look_up_season(lambda profile: "wind" not in profile.absent, pl.Boolean()),
+        log2_measured=look_up_season(lambda profile: "log2" not in profile.absent, pl.Boolean()),
         sample_rate_hz=pl.coalesce("sample_rate_hz", rate),
         log1_part=count_changes("log1"),
         log2_part=count_changes("log2"),

@@ -17,7 +17,7 @@ from pipeline.tables.schemas import TABLES, conform
 from warehouse.archive.faults import OF_A_HEADER, fault_frame
 from warehouse.archive.list_rules import find_windows_outside_run
 from warehouse.derive.plausible import add_doubts, judge, list_gross_faults
-from warehouse.derive.same_samples import CONTENT, same_samples
+from warehouse.derive.same_samples import CONTENT, find_same_samples
 from warehouse.intake import lake
 from warehouse.intake import seasons as intake
 from warehouse.store.database import open_database
@@ -128,7 +128,7 @@ def read_earlier(store: Store, table: str) -> pl.DataFrame:
 
     Empty where there was no rebuild.
     """
-    if store.made_from(table) is not None:
+    if store.read_fingerprint(table) is not None:
         return store.read(table)
     try:
         with open_database(store.database) as db:
@@ -178,7 +178,7 @@ def judge_tows(
         blocks: their runs.
         contents: what `same_samples` takes of the same blocks.
     """
-    twice = same_samples(tows, contents)
+    twice = find_same_samples(tows, contents)
     once = tows.join(twice, on="tow_id", how="anti")
     judged = judge(once, blocks)
     gross = list_gross_faults(judged, once)

@@ -44,7 +44,7 @@ def judge(tows: pl.DataFrame, blocks: RunBlocks) -> tuple[Shift, ...]:
     """
     if tows.is_empty():
         return ()
-    return plausibility(Tows.of(tows, blocks))
+    return plausibility(Tows.from_frames(tows, blocks))
 
 
 def list_gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:
@@ -89,10 +89,10 @@ def _sentence(shift: Shift) -> str:
         "season": say("All {} tows of season {}", len(shift.tows), shift.key),
         "archive": say("All tows of the archive"),
     }[shift.kind]
-    return say("{}: {}. {}", whose, _seen(shift), _way_out(shift))
+    return say("{}: {}. {}", whose, _describe_shift(shift), _way_out(shift))
 
 
-def _seen(shift: Shift) -> str:
+def _describe_shift(shift: Shift) -> str:
     if shift.quantity == "force":
         return say(
             "the force is {:.2g} times what the size of the boat and the other tows give",

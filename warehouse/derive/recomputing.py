@@ -52,7 +52,7 @@ class ArchiveRuns:
     hand_windows: pl.DataFrame
     blocks: pl.DataFrame
 
-    def with_only(self, tow_ids: Collection[str]) -> "ArchiveRuns":
+    def keep_only(self, tow_ids: Collection[str]) -> "ArchiveRuns":
         """Return the archive with these tows only."""
         is_chosen = pl.col("tow_id").is_in(list(tow_ids))
         return ArchiveRuns(
@@ -96,7 +96,7 @@ def recompute_archive(methods: Sequence[Method], archive: ArchiveRuns) -> Recomp
         if method.name in errors:
             failing = find_failing_tows(method, archive) | failing
     if failing:
-        sound = archive.with_only(set(archive.tows["tow_id"]) - set(failing))
+        sound = archive.keep_only(set(archive.tows["tow_id"]) - set(failing))
         made, errors = _recompute_methods(methods, sound)
     if not made:
         raise next(iter(errors.values()))
@@ -127,7 +127,7 @@ def find_failing_tows(method: Method, archive: ArchiveRuns) -> dict[str, BaseExc
     failing: dict[str, BaseException] = {}
     for tow_id in archive.tows["tow_id"]:
         try:
-            _recompute(method, archive.with_only([tow_id]), RunCache())
+            _recompute(method, archive.keep_only([tow_id]), RunCache())
         except BaseException as error:
             if not is_unforeseen(error):
                 raise

@@ -31,7 +31,7 @@ SMALLEST: Final = 1e-9
 """Stands for a mean of 0, which has no logarithm."""
 
 
-def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
+def find_same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     """Return a fault for each tow with a run that is another tow's.
 
     Args:

@@ -46,7 +46,7 @@ def study_tables(
         judged = option_effects(method, *known, links, run_cache)
         effects.append(judged.with_columns(own, study=pl.lit(JUDGEMENT)))
     if method != first_method:
-        old, new = _in_order(first_method, method)
+        old, new = _order_by_history(first_method, method)
         before, after = (tow_instruments.filter(method=end.name) for end in (old, new))
         steps = ladder(old, new, *known, (before, after), run_cache)
         ladders = [steps.with_columns(from_method=pl.lit(old.name), to_method=pl.lit(new.name))]
@@ -61,6 +61,6 @@ def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.Dat
     return pl.concat(frames, how="diagonal") if frames else schema.create_empty()
 
 
-def _in_order(first: Method, other: Method) -> tuple[Method, Method]:
+def _order_by_history(first: Method, other: Method) -> tuple[Method, Method]:
     """Return the two ends of a ladder: what came first in history is its beginning."""
     return (other, first) if other.name == FIRST_PUBLISHED else (first, other)

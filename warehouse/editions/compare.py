@@ -127,7 +127,7 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 def _method_in_print(store: Store, printed: Edition) -> Method | None:
     """Return the method in force when an edition was printed; None where no method says so."""
     printed_in = printed.manifest.printed_in or printed.manifest.valid_from.year
-    known = KnownMethods.of(store)
+    known = KnownMethods.from_store(store)
     return find_method_in_force(printed_in, [known.get(name) for name in known.names])
 
 
@@ -305,7 +305,7 @@ def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules
         MissingKnowledgeError: the rules ask for what is not known.
     """
     without_races = replace(report(old, new, compare(store, old, new)), race_rules=rules)
-    if store.made_from("listed_races") is None or not store.count_rows("listed_races"):
+    if store.read_fingerprint("listed_races") is None or not store.count_rows("listed_races"):
         return without_races
     results = store.read("listed_races")
     before, after = (replay(lines_in_time(store, one), results, rules) for one in (old, new))

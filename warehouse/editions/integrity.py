@@ -94,7 +94,7 @@ def check_chain(
 
 def _known_editions(store: Store) -> dict[str, Row]:
     """Return what the last rebuild noted of each edition, by its name."""
-    if store.made_from("editions") is None:
+    if store.read_fingerprint("editions") is None:
         return {}
     return {row["edition"]: row for row in store.read("editions").iter_rows(named=True)}
 
@@ -153,7 +153,7 @@ def _find_wrong_relations(
 
 def _find_changed_facts(store: Store, manifest: Manifest) -> Iterator[tuple[str, Sentence]]:
     """Find fields of a manifest that the archive or the last rebuild says otherwise."""
-    if store.made_from("about_archive") is not None:
+    if store.read_fingerprint("about_archive") is not None:
         is_simulated = bool(store.read("about_archive")["simulated"][0])
         if is_simulated != manifest.simulated:
             yield "simulated", say("the archive says otherwise than the edition")

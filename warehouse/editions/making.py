@@ -118,7 +118,7 @@ def make_again(store: Store, edition: Edition) -> Edition:
         BrokenPromiseError: the printed edition that lines were carried over from is damaged, or
             the list of what a printed one was made from.
     """
-    if store.made_from("tows") is None:
+    if store.read_fingerprint("tows") is None:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
     manifest = edition.manifest
     if edition.method is None:

@@ -88,7 +88,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
 
 def _is_of_today(store: Store, method: Method) -> bool:
     """Return whether the tables are made with this method and with the code of today."""
-    if store.made_from("tows") is None:
+    if store.read_fingerprint("tows") is None:
         return False
     with_code = (method.name, method.content_hash, code_version())
     return with_code in store.read("lineage").select("method", "method_hash", "code_version").rows()

@@ -97,7 +97,7 @@ SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 
 def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     """Return the cells of a sheet as they are printed, by header."""
-    words = _in_words(frame)
+    words = _write_words(frame)
     return pl.DataFrame(
         {
             field.header: [_printed(value, field) for value in words[field.column]]
@@ -176,7 +176,7 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
     cells = _cells(frame, fields)
     formats = [_number_format(field) for field in fields]
     shown = [tuple(cell.value for cell in row) for row in sheet.iter_rows()]
-    expected = [tuple(cells.columns), *(tuple(map(_as_read, row)) for row in cells.rows())]
+    expected = [tuple(cells.columns), *(tuple(map(_read_cell, row)) for row in cells.rows())]
     formatted = [
         [cell.number_format for cell in row if cell.value is not None]
         for row in sheet.iter_rows(min_row=2)
@@ -190,7 +190,7 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
 
 def _cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     """Return the values of the cells of a workbook, by header."""
-    words = _in_words(frame)
+    words = _write_words(frame)
     cells = []
     for field in fields:
         value = pl.col(field.column)
@@ -199,7 +199,7 @@ def _cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     return words.select(cells)
 
 
-def _as_read(value: object) -> object:
+def _read_cell(value: object) -> object:
     """Return a value as a workbook gives it back: a day with a time, no empty text."""
     if isinstance(value, dt.date):
         return dt.datetime.combine(value, dt.time())
@@ -212,7 +212,7 @@ def _number_format(field: Field) -> str:
     return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
 
 
-def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
+def _write_words(frame: pl.DataFrame) -> pl.DataFrame:
     """Codes in the words that people read."""
     if "flags" in frame.columns:
         to_look_at = pl.col("flags").list.len() > 0

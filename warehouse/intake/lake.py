@@ -151,7 +151,7 @@ def _bring_in(
         fault = Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
     else:
         return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}
-    found = fault.as_row()
+    found = fault.to_row()
     return row | {name: found[name] for name in row.keys() & found.keys()}
 
 

@@ -26,7 +26,7 @@ def read_samples(
     whole, place, defects = read_tow_samples(root, tow, profile)
     samples, faults = judge_samples(whole, place, tow, runs, defects)
     facts = {
-        "losses": [fault.as_row() for fault in faults],
+        "losses": [fault.to_row() for fault in faults],
         "wind_read": samples["wind_speed_m_s"].null_count() == 0,
         **measure_steps(samples),
     }

@@ -57,7 +57,7 @@ def index(store: Store, root: Path) -> dict[str, pl.DataFrame]:
     about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
     about |= listed.profiles.publication.model_dump()
     seasons = listed.tows["season"].unique().sort().to_list()
-    told = ((s, dataclasses.asdict(listed.profiles.for_season(s))) for s in seasons)
+    told = ((s, dataclasses.asdict(listed.profiles.find(s))) for s in seasons)
     return {
         **{f"listed_{name}": getattr(listed, name) for name in LISTED},
         "listed_files": listed.files,
@@ -85,7 +85,7 @@ def find_known_samples(
         tows: all listed tows of the season.
         before: rows of `samples` of the last rebuild.
     """
-    profile = read_profiles(root).for_season(tows["season"][0])
+    profile = read_profiles(root).find(tows["season"][0])
     own = before.join(tows, on="tow_id", how="semi").sort("tow_id")
     return own if lake.is_up_to_date(store, own, tows, runs, profile) else None
 
@@ -98,7 +98,7 @@ def read_tows(store: Store, root: Path, runs: pl.DataFrame, tows: pl.DataFrame) 
     """
     season = tows["season"][0]
     own = runs.join(tows, on="tow_id", how="semi")
-    index = lake.read_tows(store, root, tows, own, read_profiles(root).for_season(season))
+    index = lake.read_tows(store, root, tows, own, read_profiles(root).find(season))
     return index.select(pl.lit(season).cast(pl.Int32).alias("season"), pl.all())
 
 

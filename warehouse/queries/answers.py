@@ -83,7 +83,7 @@ def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
         raise make_unknown_edition_error(name, known)
     if not name.startswith(DRAFT):
         return read_edition(views.store, name)
-    method = KnownMethods.of(views.store).get(name.removeprefix(DRAFT))
+    method = KnownMethods.from_store(views.store).get(name.removeprefix(DRAFT))
     return drafted(views.store, method, valid_from)
 
 
@@ -277,5 +277,5 @@ def _members(views: Views, edition: str) -> pl.DataFrame:
     if not edition.startswith(DRAFT):
         return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())
     method = edition.removeprefix(DRAFT)
-    is_there = views.store.made_from("ensemble") is not None
+    is_there = views.store.read_fingerprint("ensemble") is not None
     return views.store.read("ensemble", method) if is_there else pl.DataFrame()

@@ -133,7 +133,7 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
     dated = tows.filter(pl.col("tow_id") != tow_id, pl.col("tow_date") <= tow["tow_date"])
     is_earlier = (pl.col("tow_date") < tow["tow_date"]) | (pl.col("tow_id") < tow_id)
     of_tows = dated.select("tow_id", "tow_date", "boat_type", *SIZES_OF_DAY)
-    others = _at_speed(
+    others = _find_cw_at_speed(
         curves.join(of_tows, on="tow_id", maintain_order="left"), tow["declared_speed_m_s"]
     ).sort("tow_date", "tow_id")
     own_before = _newest(others.filter(is_earlier, **{name: tow[name] for name in LINE}))
@@ -263,7 +263,7 @@ def _use_runs(known: pl.DataFrame, replaced_by: Mapping[int, int]) -> Row:
     }
 
 
-def _at_speed(curves: pl.DataFrame, speed_m_s: float) -> pl.DataFrame:
+def _find_cw_at_speed(curves: pl.DataFrame, speed_m_s: float) -> pl.DataFrame:
     """Curves with Cw and its interval at a speed; those that end below it go.
 
     The interval keeps its width in per cent.

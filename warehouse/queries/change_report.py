@@ -93,7 +93,7 @@ def reported_path(store: Store) -> Path:
 
 def change_report(store: Store) -> ChangeReport:
     """Return what changed in the tables since the last report."""
-    return _between(store, _reported_state(store), store.contents(DATABASE_TABLE))
+    return _compare_states(store, _reported_state(store), store.contents(DATABASE_TABLE))
 
 
 def is_reported(store: Store) -> bool:
@@ -141,7 +141,7 @@ def _today(store: Store) -> Tables:
 
 
 @lru_cache(maxsize=1)
-def _between(store: Store, was_state: object, now_state: object) -> ChangeReport:
+def _compare_states(store: Store, was_state: object, now_state: object) -> ChangeReport:
     """Return what changed from one state of the tables to another; cached, as several ask."""
     now = _today(store)
     was = now if was_state == now_state else _reported(store)

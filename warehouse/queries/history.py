@@ -54,7 +54,7 @@ class History:
         Raises:
             MissingKnowledgeError: nothing was rebuilt in this data folder.
         """
-        if store.made_from("tows") is None:
+        if store.read_fingerprint("tows") is None:
             raise make_no_warehouse_error(store)
         tows = typed_tows(store)
         known = store.read("type_consistency").select("quantity", "difference_that_matters")

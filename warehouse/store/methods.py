@@ -36,7 +36,7 @@ class KnownMethods:
     folder: Path
 
     @classmethod
-    def of(cls, store: Store) -> Self:
+    def from_store(cls, store: Store) -> Self:
         """Those of a data folder."""
         return cls(store.root / "methods")
 
@@ -97,7 +97,7 @@ class KnownMethods:
             return self.get(name_or_file)
         return parse_method(read_method_file(file), str(file), self.text)
 
-    def kept(self, name_or_file: str) -> str:
+    def keep(self, name_or_file: str) -> str:
         """Return the name under which a method is known; a file is first copied into the folder.
 
         Raises:
@@ -131,13 +131,17 @@ def methods_to_apply(store: Store, listed: Sequence[str], asked: Sequence[str] =
     if listed and not asked:
         return list(listed)
     wanted = {*(asked or list_shipped_methods()), *_held(store)}
-    in_order = dict.fromkeys((*listed, *KnownMethods.of(store).names))
+    in_order = dict.fromkeys((*listed, *KnownMethods.from_store(store).names))
     return [name for name in in_order if name in wanted]
 
 
 def _held(store: Store) -> list[str]:
     """Methods of which the data folder holds tables."""
-    return [] if store.made_from("methods") is None else store.read("methods")["method"].to_list()
+    return (
+        []
+        if store.read_fingerprint("methods") is None
+        else store.read("methods")["method"].to_list()
+    )
 
 
 def read_method_file(file: Path) -> str:

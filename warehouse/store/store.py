@@ -107,7 +107,7 @@ class Store:
         own = frame.filter(pl.col("method") == method)
         return own if columns is None else own.select(columns)
 
-    def made_from(self, table: str) -> str | None:
+    def read_fingerprint(self, table: str) -> str | None:
         """Fingerprint of what a table was made from; None if it is not there or is damaged."""
         return read_file_metadata(self.table_path(table), FINGERPRINT_KEY)
 
@@ -134,7 +134,7 @@ def digest_contents(name: str, frame: pl.DataFrame) -> str:
 
 def archive_root(store: Store) -> Path | None:
     """Where the archive was when the warehouse was last rebuilt; None if it is not there now."""
-    if store.made_from("about_archive") is None:
+    if store.read_fingerprint("about_archive") is None:
         return None
     root = Path(store.read("about_archive")["root"][0])
     return root if root.is_dir() else None

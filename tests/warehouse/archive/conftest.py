@@ -76,7 +76,7 @@ class Archive:
         faults = list(index.faults)
         for tow in index.tows.iter_rows(named=True):
             try:
-                profile = index.profiles.for_season(tow["season"])
+                profile = index.profiles.find(tow["season"])
                 samples, place, defects = read_tow_samples(self.root, tow, profile)
                 judged = judge_samples(samples, place, tow, index.runs, defects)
             except DefectiveInputError as error:
