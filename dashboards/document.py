@@ -7,7 +7,7 @@ value is written as its column is everywhere.
 
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any, Final, TypeAlias
 
@@ -75,6 +75,8 @@ class Document:
         chosen: what each selector of the page says at first. A selector without a choice shows
             everything, with what it would choose by as a column of its own.
         pictures: whether charts can be shown.
+        link: gives the address that a value of a column leads to, by both; empty for none. Pages of
+            the site when left out.
     """
 
     def __init__(
@@ -84,11 +86,13 @@ class Document:
         chosen: Mapping[str, str] | None = None,
         *,
         pictures: bool = True,
+        link: Callable[[str, Any], str] | None = None,
     ) -> None:
         self.language = language
         self.root = root
         self.chosen = dict(chosen or {})
         self.pictures = pictures
+        self._link = link or self._link_to_page
 
     def render(self, template: str, **data: Any) -> str:
         """Return the document as HTML."""
@@ -291,9 +295,9 @@ class Document:
     def _write_cell(self, name: str, value: Any) -> Markup:
         if isinstance(value, Markup):
             return value
-        page = self._find_page(name, value)
-        if page:
-            return Markup('<a href="{}">{}</a>').format(self.root + page, value)
+        address = self._link(name, value)
+        if address:
+            return Markup('<a href="{}">{}</a>').format(address, value)
         if name == "messages":  # in Dutch and in English
             return escape(value[LANGUAGES.index(self.language.tag)])
         if name in HASHES:
@@ -302,12 +306,12 @@ class Document:
             return escape(self.language.name_code(value or ""))
         return escape(self.language.write(name, value))
 
-    def _find_page(self, name: str, value: Any) -> str:
-        """Return the page about the value of a column; empty where there is none."""
+    def _link_to_page(self, name: str, value: Any) -> str:
+        """Return the way to the page about the value of a column; empty where there is none."""
         if name == "fsn_no" and value:
-            return boat_path(value)
+            return self.root + boat_path(value)
         if name == "boat_type" and value not in (None, "", "unknown", "all"):
-            return type_path(value)
+            return self.root + type_path(value)
         return ""
 
 

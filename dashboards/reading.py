@@ -74,8 +74,8 @@ def read_blocks(html: str, *, folded: bool = False) -> list[Block]:
 def _drop_empty(blocks: list[Block]) -> Iterator[Block]:
     """Yield blocks without tables that have no rows, and without headings of nothing."""
     kept = [block for block in blocks if block.kind != "table" or len(block.rows) > 1]
-    end = Block("heading", level=1)
-    for block, following in zip(kept, [*kept[1:], end], strict=True):
+    followed_by = [*kept[1:], Block("heading", level=1)]
+    for block, following in zip(kept, followed_by, strict=False):
         is_heading = block.kind == "heading" and following.kind == "heading"
         if not is_heading or following.level > block.level or block.level == 1:
             yield block

@@ -55,12 +55,12 @@ def _write(block: Block, width: int) -> str:
         rule = {1: "=", 2: "-"}.get(block.level, "") * len(block.text)
         lines = [f"\n{block.text}", rule] if rule else [f"\n{block.text}"]
     elif block.kind == "paragraph":
-        lines = textwrap.wrap(block.text, prose_width, break_long_words=False)
+        lines = _wrap(block.text, prose_width)
     elif block.kind == "code":
         lines = [textwrap.indent(block.text, INDENT), ""]
     elif block.kind == "terms":
         for name, text in block.rows:
-            lines += textwrap.wrap(f"{name}: {text}", prose_width, subsequent_indent=INDENT)
+            lines += _wrap(f"{name}: {text}", prose_width, INDENT)
     elif block.kind == "table" and block.look != "steps":
         lines = [_draw_table(block.rows, width), ""]
     elif block.kind == "columns":
@@ -85,6 +85,13 @@ class Column(NamedTuple):
         of_title = max(map(len, lines), default=0)
         min_width = max(longest_word, min(widest, MIN_TEXT_WIDTH), of_title)
         return cls("\n".join(lines), cells, min_width)
+
+
+def _wrap(text: str, width: int, indent: str = "") -> list[str]:
+    """Return a text as lines; names of files and commands stay whole."""
+    return textwrap.wrap(
+        text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
 
 
 def _draw_table(rows: list[list[str]], width: int) -> str:

@@ -9,6 +9,7 @@ import polars as pl
 from pipeline.method.definition import Method
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.archive_tables import add_first_seen, read_archive, read_earlier
+from warehouse.derive.database import build_database
 from warehouse.derive.recomputing import ArchiveRuns, recompute_archive
 from warehouse.derive.registers import published_tables, register_tables
 from warehouse.store.decisions import FILE_NAME, read_decisions, tabulate_decisions
@@ -20,6 +21,13 @@ def make_tables(store: Store, archive: Path, methods: Sequence[Method], today: d
     read_archive(store, archive, today)
     if methods:
         compute_tables(store, methods, today)
+
+
+def fill_database(store: Store, tables: dict[str, pl.DataFrame]) -> None:
+    """Make a database of some tables of a simulated archive; the others are empty."""
+    empty = {name: schema.create_empty() for name, schema in TABLES.items()}
+    about = pl.DataFrame({"key": ["simulated"], "value": ["true"]})
+    build_database(store.database, empty | {"about": about} | tables)
 
 
 def compute_tables(store: Store, methods: Sequence[Method], today: dt.date) -> None:

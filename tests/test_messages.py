@@ -6,11 +6,13 @@ from string import Formatter
 import click
 import pytest
 from babel.messages.pofile import read_po
-from herijk.cli.render import table
 
+from dashboards.document import Document
+from dashboards.language import Language
+from dashboards.terminal import to_text
 from herijk.cli.speaking import language_of
 from pipeline import errors
-from pipeline.messages import LANGUAGE, ngettext, pgettext, say, speaker, spoken
+from pipeline.messages import ngettext, pgettext, say, speaker, spoken
 from tests.texts import OF_CLICK, PO, WHAT_TO_DO, as_file, catalogue, in_python
 
 NL = speaker("nl")
@@ -86,9 +88,8 @@ def test_data_is_never_translated():
     assert spoken("Look", "nl") == "Look"
     assert say("{} tows in {} seasons", "Look", 3).spoken("nl") == "Look proeven in 3 seizoenen"
     assert NL("{} tows in {} seasons", "Look", 3) == "Look proeven in 3 seizoenen"
-    before = LANGUAGE.set("nl")
-    assert table([{"name": "Look"}], "name", {"name": say("boat")}) == "  sloep\n  Look"
-    LANGUAGE.reset(before)
+    made = Document(Language("nl")).table([{"name": "Look"}], "name", heads={"name": say("boat")})
+    assert to_text(made) == "sloep\n  Look"
 
 
 def test_click_still_says_what_is_translated():

@@ -64,7 +64,7 @@ def _read_verdicts(results: Results, boat_type: str, methods: Sequence[str]) -> 
     shown = methods[-1]
     outside = results.views.ask("outliers").filter(method=shown, boat_type=boat_type)
     return {
-        "name": boat_type,
+        "boat_type": boat_type,
         "verdicts": [row for row in rows if row["method"] == shown],
         "rows": rows,
         "outside": outside,

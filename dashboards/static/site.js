@@ -10,7 +10,7 @@
   // What selectors say is shown of all that is chosen by them; the address holds it.
   const own = () => all(".selects select:not([data-asks])"); // the others ask the workbench something else
   let selects = own();
-  const first = new Map(selects.map((one) => [one.name, one.value]));
+  let first = new Map();
   const isChosen = (part) => selects.every(({ name, value }) =>
     part.dataset[name] === undefined || part.dataset[name].split("|").includes(value));
 
@@ -29,7 +29,11 @@
   }
 
   function keep() {
-    const asked = new URLSearchParams(selects.filter((one) => first.get(one.name) !== one.value).map((one) => [one.name, one.value]));
+    const asked = new URLSearchParams(location.search);
+    for (const { name, value } of selects) {
+      if (first.get(name) === value) asked.delete(name);
+      else asked.set(name, value);
+    }
     try { history.replaceState(null, "", `?${asked}${location.hash}`); } catch { /* of a page from disk it may not change */ }
     const other = document.querySelector(".language");
     other.href = `${other.getAttribute("href").split("?")[0]}?${asked}`;
@@ -112,9 +116,15 @@
     form?.querySelector("input").focus();
   });
 
-  const asked = new URLSearchParams(location.search);
-  for (const one of selects) if ([...one.options].some((option) => option.value === asked.get(one.name))) one.value = asked.get(one.name);
-  show();
-  window.herijk = { start: show };
+  function start() {
+    selects = own();
+    first = new Map(selects.map((one) => [one.name, one.value]));
+    const asked = new URLSearchParams(location.search);
+    for (const one of selects) if ([...one.options].some((option) => option.value === asked.get(one.name))) one.value = asked.get(one.name);
+    show();
+  }
+
+  start();
+  window.herijk = { start };
   document.getElementById(location.hash.slice(1))?.closest("details")?.setAttribute("open", "");
 })();

@@ -35,7 +35,7 @@
     }
     history.replaceState(null, "", `?${asked}${location.hash}`);
     document.querySelector(".language").href = page.querySelector(".language").getAttribute("href");
-    window.herijk.start(byId("content"));
+    window.herijk.start();
   }
 
   // A change for all seasons takes the place of those for some.
@@ -46,7 +46,7 @@
     for (const key of [...asked.keys()]) if (key.startsWith(`${name}.`)) asked.delete(key);
     asked.set(name, several.length ? [...several].filter((box) => box.checked).map((box) => box.value).join(",") : field.value);
     if (name === "base") [...asked.keys()].filter((key) => key.includes(".") || ["against", "at"].includes(key)).forEach((key) => asked.delete(key));
-    if (name === "boat") asked.delete("tow");
+    if (name === "boat") asked.delete("tow_id");
     return asked;
   }
 
@@ -55,13 +55,10 @@
     if (target.matches("[data-asks]") && !isCleared) ask(changed(target));
   });
   document.addEventListener("click", (event) => {
-    const link = event.target.closest('td a[href^="?boat="]');
+    const link = event.target.closest('td a[href^="?"]');
     if (!link) return;
     event.preventDefault();
-    const asked = new URLSearchParams(location.search);
-    asked.delete("tow");
-    asked.set("boat", link.textContent);
-    ask(asked).then(() => byId("boat").scrollIntoView());
+    ask(new URLSearchParams(link.search)).then(() => byId("boat").scrollIntoView());
   });
   form.addEventListener("submit", (event) => event.preventDefault());
 

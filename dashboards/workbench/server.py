@@ -125,7 +125,11 @@ class BenchPage:
         other = next(tag for tag in LANGUAGES if tag != self.language)
         tows = results["tows"] if results else []
         chosen = {"tow_id": tows[0] if tows else ""}
-        document = Document(Language(self.language), "", chosen)
+
+        def link_to_boat(name: str, value: object) -> str:
+            return asked.address(boat=value) + "#boat" if name == "fsn_no" and value else ""
+
+        document = Document(Language(self.language), "", chosen, link=link_to_boat)
         return document.render(
             "workbench",
             asked=asked,

@@ -14,7 +14,7 @@ HERE: Final = Path(__file__).parent
 SITE: Final = HERE.parents[1] / "demo" / "data" / "site" / "en"
 PICTURES: Final = {
     "boat.png": ("boats/FSN106.html", "section.answer", "section.answer"),
-    "seasons.png": ("seasons.html", "#season-change", "#season-change .drawn :is(svg, canvas)"),
+    "seasons.png": ("seasons.html", "#season-change", "#season-change svg"),
 }
 """Each picture: the page of the site, a section of it, and what of the section is shown."""
 
@@ -28,7 +28,7 @@ def take_pictures(site: Path = SITE, folder: Path = HERE) -> None:
         page = browser.new_page(viewport={"width": 900, "height": 900})
         for name, (address, section, part) in PICTURES.items():
             page.goto((site / address).as_uri())
-            page.locator(section).scroll_into_view_if_needed()  # then its charts are drawn
+            page.locator(section).scroll_into_view_if_needed()
             page.locator(part).first.screenshot(path=folder / name)
         browser.close()
 

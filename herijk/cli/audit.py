@@ -8,6 +8,7 @@ import click
 
 from herijk.cli.options import archive_option, data_option, form_options, show
 from herijk.cli.speaking import Command, argument, flag, option
+from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import tell
 
 if TYPE_CHECKING:
@@ -80,6 +81,11 @@ def audit(
         if fsn_no is not None:
             data = boats.read_boat(results, fsn_no, edition=edition, methods=shown_methods)
             data |= {"steps_shown": steps, "simulated": simulated}
+            known_tows = data["tows"]["tow_id"].to_list()
+            if tow and tow not in known_tows:
+                raise MissingKnowledgeError(
+                    "boat {} has no tow {!r}; it has {}", fsn_no, tow, ", ".join(known_tows)
+                )
             chosen = {"tow_id": tow or "", "method": method or ""}
             show("audit_boat", data, BOAT_FIELDS, chosen=chosen, folded=steps)
         else:
@@ -99,8 +105,6 @@ def _choose_methods(results: "Results", method: str | None) -> list[str]:
     Raises:
         MissingKnowledgeError: the last rebuild did not apply the method.
     """
-    from pipeline.errors import MissingKnowledgeError
-
     known: list[str] = results.views.table("methods")["method"].sort().to_list()
     if method is None:
         return known

@@ -4,7 +4,6 @@ import ast
 import re
 
 import pytest
-from dashboards.figures import FIGURES
 
 from herijk.cli.main import app
 from pipeline.assessment.checks import CODES
@@ -15,6 +14,7 @@ from pipeline.tables.views import VIEWS
 from tests.architecture.repository import ROOT, modules, read, tracked_files
 from warehouse.archive.remedies import REMEDIES
 
+TEMPLATES = "dashboards/templates"
 OPTIONS = {
     f"{step}.{option}"
     for step, options in Steps.model_fields.items()
@@ -23,7 +23,7 @@ OPTIONS = {
 
 LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
 LEDGER = read("docs/sources.md")
-NAMED = re.compile(r"\b(table|view|command|figure|test|check|method|option)s? `([^`]+)`")
+NAMED = re.compile(r"\b(table|view|command|page|test|check|method|option)s? `([^`]+)`")
 COLUMNS = re.compile(r"columns? ((?:`\w+`(?:, | and )?)+) of table `(\w+)`")
 ROWS = [line for line in LEDGER.splitlines() if re.match(r"\| [PCS]\d+ \|", line)]
 COMMANDS = {
@@ -34,7 +34,7 @@ COMMANDS = {
 KNOWN = {
     "table": set(TABLES),
     "view": set(VIEWS),
-    "figure": set(FIGURES),
+    "page": {file.name.partition(".")[0] for file in (ROOT / TEMPLATES).glob("*.html.j2")},
     "check": set(CODES),
     "method": set(list_shipped_methods()),
     "option": OPTIONS,

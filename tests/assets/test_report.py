@@ -6,10 +6,9 @@ import json
 import dagster as dg
 import polars as pl
 import pytest
-from dashboards.speech import Speech
-from dashboards.statements.rebuild import Check, headlines
 
 from assets.report import Done, failed_checks
+from dashboards.reports import Check, write_headlines
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.edition_bench import EditionBench
@@ -90,8 +89,9 @@ def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):
     change_reported(bench, "tows", season=was)
     summary = change_report(bench.store)
     assert summary.seasons_gone == [2002]
-    first = headlines(summary, [])[0]
-    assert first(Speech("en")) == "Seasons of which the archive has no tow any more: 2002"
+    assert (
+        write_headlines(summary, [])[0] == "Seasons of which the archive has no tow any more: 2002"
+    )
 
 
 @pytest.mark.more

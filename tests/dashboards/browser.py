@@ -34,12 +34,6 @@ NEEDED = [
 SERIOUS = {"serious", "critical"}
 
 
-def draw_all(page):
-    """Draws charts further down too, as printing does."""
-    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
-    page.locator("figure:not(:has(svg[role=img])) .chart").first.wait_for(state="detached")
-
-
 def too_wide(page, boxes):
     """What is wider than the window, or in these boxes wider than they are.
 

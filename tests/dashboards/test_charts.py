@@ -24,7 +24,8 @@ CURVE = pl.DataFrame(
     [
         {"kind": "line", "speed_m_s": 2.2, "cw_kg_m": 30.0, "cw_lo_kg_m": 29.0, "cw_hi_kg_m": 31.0},
         {"kind": "line", "speed_m_s": 2.6, "cw_kg_m": 32.0, "cw_lo_kg_m": 31.0, "cw_hi_kg_m": 33.0},
-        {"kind": "point", "speed_m_s": 2.4, "cw_kg_m": 31.0, "run": 1, "direction": 1, "used": True},
+        {"kind": "point", "speed_m_s": 2.4, "cw_kg_m": 31.0, "run": 1, "direction": 1,
+         "used": True},
         {"kind": "point", "speed_m_s": 2.5, "cw_kg_m": 33.0, "run": 4, "direction": -1,
          "used": False},
         {"kind": "declared", "speed_m_s": 2.4, "cw_kg_m": 31.0, "cw_lo_kg_m": 30.0,
@@ -154,7 +155,7 @@ def test_a_trace_says_why_it_was_cut_and_a_name_is_escaped():
     shown = words(DRAWN["trace frame"]())
     assert any("vlaag" in text for text in shown)
     assert "A<b" not in str(DRAWN["gains"]())
-    assert "A&lt;b 6D: −35 s" in str(DRAWN["gains"]())
+    assert "A&lt;b 6D: \N{MINUS SIGN}35 s" in str(DRAWN["gains"]())
 
 
 def test_nothing_known_gives_no_picture():
@@ -165,7 +166,7 @@ def test_nothing_known_gives_no_picture():
 @pytest.mark.parametrize(
     ("values", "ticks"),
     [
-        ([1.0, 2.0], [1.0, 1.2, 1.4, 1.6, 1.8, 2.0]),
+        ([1.0, 2.0], [1.0, 1.5, 2.0]),
         ([0.0, 41.0], [0, 10, 20, 30, 40]),
         ([5.0], None),
     ],

@@ -73,7 +73,7 @@ def test_a_certificate_says_what_the_register_says(views):
     exact = power_per_rower_w(line["cw_kg_m"], line["declared_speed_m_s"], line["rowers"])
     assert power == pytest.approx(float(exact), abs=0.05)
     others = lines_of(views, EDITIONS[-1]).filter(fsn_no=line["fsn_no"]).height - 1
-    known = [row for table in tables[1:] for row in table[1:] if row[1] != "–"]
+    known = [row for table in tables[1:] for row in table[1:] if row[1] != "\N{EN DASH}"]
     assert len(known) == others
 
 

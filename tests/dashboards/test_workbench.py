@@ -7,13 +7,11 @@ import urllib.request
 from urllib.parse import urlencode
 
 import pytest
-from dashboards.figures.style import SCENARIO
-from dashboards.workbench.results import results
 from polars.testing import assert_frame_equal
 
-from dashboards import option_labels as texts
+from dashboards import words
 from dashboards.guard import listen
-from dashboards.workbench.bench import Saving
+from dashboards.workbench.bench import SCENARIO, Saving
 from dashboards.workbench.form import CONTROLS, write
 from dashboards.workbench.server import LOOPBACK
 from pipeline.assessment.checks import CODES
@@ -23,14 +21,13 @@ from pipeline.method.reading import parse_method
 from pipeline.recompute.run_cache import RunCache
 from warehouse.editions.compare import compare
 from warehouse.editions.publish import drafted
-from warehouse.queries.views import NEWEST
 
 PARENT = "rebased-2015"
 SIDE = {"wind.side": "0.77"}
 
 
 def asked(workbench, **query):
-    return workbench.asked({"base": PARENT, "against": "as-published"} | query)
+    return workbench.read_address({"base": PARENT, "against": "as-published"} | query)
 
 
 def saving(name="own", changes=SIDE):
@@ -74,48 +71,41 @@ def test_every_option_and_value_has_a_text():
     keys = [f"{step}.{option}" for step, option in CONTROLS]
     keys += [f"step.{step}" for step, _ in CONTROLS]
     keys += [f"choice.{v}" for c in CONTROLS.values() if c.kind == "choice" for v in c.values]
-    assert [key for key in keys if key not in texts.TEXTS] == []
-    assert texts.text("speed.something_new") == "something_new"
+    known = {*words.OPTIONS, *(f"choice.{code}" for code in words.CODES)}
+    assert [key for key in keys if key not in known] == []
+    assert words.name_option("speed.something_new") == "something_new"
 
 
 def test_an_address_without_anything_asks_the_usual(workbench):
-    usual = workbench.asked({})
-    assert (usual.base, usual.against, usual.tows, usual.at) == ("rebased", "rebased", "all", "")
-    assert usual.boat == workbench.boats["fsn_no"][0] == workbench.asked({"boat": "none"}).boat
+    usual = workbench.read_address({})
+    unknown = workbench.read_address({"boat": "none"})
+    assert (usual.base, usual.against, usual.at) == ("rebased", "rebased", "")
+    assert usual.boat == workbench.boats["fsn_no"][0] == unknown.boat
 
 
 def test_an_address_asks_again_what_it_was_made_from(workbench):
-    one = asked(workbench, tows="2014", at="2009", boat=workbench.boats["fsn_no"][1], **SIDE)
+    one = asked(workbench, at="2009", boat=workbench.boats["fsn_no"][1], **SIDE)
     query = dict(pair.split("=") for pair in one.address()[1:].split("&"))
-    assert workbench.asked(query) == one
+    assert workbench.read_address(query) == one
 
 
 def test_a_change_holds_for_all_seasons_or_for_those_from_one_on(workbench):
-    assert side(workbench.method(asked(workbench, **SIDE))) == {0.77}
-    method = workbench.method(asked(workbench, **SIDE, **{"wind.side.2014": "0.9"}))
+    assert side(workbench.make_method(asked(workbench, **SIDE))) == {0.77}
+    method = workbench.make_method(asked(workbench, **SIDE, **{"wind.side.2014": "0.9"}))
     assert (method.for_season(2009).wind.side, method.for_season(2014).wind.side) == (0.77, 0.9)
-    assert [d.option for d in workbench.changed(asked(workbench, **SIDE))] == ["side"]
+    assert [d.option for d in workbench.list_changes(asked(workbench, **SIDE))] == ["side"]
 
 
 def test_a_page_shows_what_is_asked(workbench):
     boat = workbench.boats["fsn_no"][0]
-    page = results(workbench, asked(workbench, boat=boat, **SIDE))
-    tables = {table.name: table.frame for part in page.sections for table in part.tables}
-    assert set(tables["boat_curves"]["method"]) == {"as-published", SCENARIO}
-    assert tables["register"].height == workbench.draft(asked(workbench)).register.height
-    assert page.data["b_weight"][0]["page"][0].endswith("#boat")
-
-
-def test_types_are_judged_by_the_tows_that_are_chosen(workbench):
-    (some,), (every,) = (
-        results(workbench, asked(workbench, **query)).data["b_weight"]
-        for query in ({"tows": NEWEST}, {})
-    )
-    assert 0 < some.height < every.height
+    shown = workbench.compute_results(asked(workbench, boat=boat, **SIDE))
+    assert set(shown["curves"]["method"]) == {"as-published", SCENARIO}
+    assert shown["lines"].height == workbench.make_draft(asked(workbench)).register.height
+    assert set(shown["consistency"]["method"]) == {"as-published", SCENARIO}
 
 
 def test_a_method_against_itself_shows_no_change(workbench):
-    summary = workbench.scenario(asked(workbench, against=PARENT)).summary()
+    summary = workbench.compare_drafts(asked(workbench, against=PARENT)).summary()
     assert summary["same"] == summary["lines"]
 
 
@@ -131,7 +121,7 @@ def test_a_method_against_itself_shows_no_change(workbench):
 )
 def test_what_cannot_be_is_refused(workbench, query, words):
     with pytest.raises(HerijkError, match=words):
-        workbench.method(asked(workbench, **query))
+        workbench.make_method(asked(workbench, **query))
 
 
 @pytest.mark.parametrize(
@@ -143,7 +133,7 @@ def test_what_cannot_be_is_refused(workbench, query, words):
     ],
 )
 def test_the_register_of_a_saved_file_is_the_one_that_was_shown(workbench, history, changes):
-    shown = workbench.draft(asked(workbench, **changes)).register
+    shown = workbench.make_draft(asked(workbench, **changes)).register
     path = workbench.save(saving(changes=changes))
     read = parse_method(path.read_text(encoding="utf-8"), str(path))
     again = dataclasses.replace(history, cache=RunCache()).under(read).register
@@ -151,7 +141,7 @@ def test_the_register_of_a_saved_file_is_the_one_that_was_shown(workbench, histo
 
 
 def test_a_comparison_finds_what_the_workbench_showed(workbench, built):
-    lines = workbench.scenario(asked(workbench, **SIDE)).register_lines
+    lines = workbench.compare_drafts(asked(workbench, **SIDE)).register_lines
     path = workbench.save(saving())
     method = parse_method(path.read_text(encoding="utf-8"), str(path))
     drafts = (drafted(built.store, one) for one in (workbench.known.get("as-published"), method))
@@ -167,7 +157,7 @@ def test_a_comparison_finds_what_the_workbench_showed(workbench, built):
 def test_a_saved_file_is_a_base_from_then_on_and_is_never_written_over(workbench):
     path = workbench.save(saving())
     before = path.read_bytes()
-    assert side(workbench.method(workbench.asked({"base": "own"}))) == {0.77}
+    assert side(workbench.make_method(workbench.read_address({"base": "own"}))) == {0.77}
     with pytest.raises(HerijkError, match="choose another name"):
         workbench.save(saving(changes={"wind.side": "1.0"}))
     assert path.read_bytes() == before
@@ -210,7 +200,7 @@ def test_it_listens_on_loopback_only(url):
 def test_only_its_own_page_is_answered_and_may_save(url, workbench):
     body, query = saving().model_dump(mode="json"), f"?{urlencode(SIDE)}"
     for path in ("", "static/workbench.js"):
-        assert ask(url, path, Host="evil.example")[0] == 403
+        assert ask(url, path, Host="evil.example")[0] == 400
     assert ask(url, "save/nl", body, Origin="http://evil.example")[0] == 403
     assert ask(url, query, **{"Sec-Fetch-Site": "cross-site"})[0] == 403
     assert ask(url, query, **{"Sec-Fetch-Site": "none"})[0] == 200

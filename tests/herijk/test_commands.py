@@ -5,10 +5,10 @@ import shutil
 
 import pytest
 from click.testing import CliRunner
-from herijk.cli.forms import FORMS
 
 from herijk.cli.main import SECTIONS, app
 from pipeline.messages import LANGUAGES
+from tests.herijk.conftest import FIELDS
 
 
 def named(command, *path):
@@ -51,7 +51,7 @@ def test_every_result_has_a_documented_form():
         for path, command in COMMANDS.items()
         if any("--json" in parameter.opts for parameter in command.params)
     }
-    assert {call.split()[0] for call in FORMS} == with_json
+    assert {call.split()[0] for call in FIELDS} == with_json
 
 
 def test_a_folder_comes_from_its_option_or_else_from_the_environment(herijk, monkeypatch):
@@ -84,6 +84,7 @@ REFUSED = {
         methods check {tmp}/wrong.toml
         methods check {tmp}/cmp.py
         audit FSN101 --data {data} --method best
+        audit FSN101 --data {data} --tow 1999-001
         audit FSN99999 --data {data}
         audit FSN101 --data {empty}
         assess 2014-999 --archive {archive} --data {data}
@@ -142,5 +143,5 @@ def test_check_says_what_is_sound_and_what_is_not(herijk, built, tmp_path):
     (tmp_path / "methods" / "ours.toml").write_text('name = "theirs"\n', encoding="utf-8")
     status, out, _ = herijk("check", "--data", tmp_path)
     assert status == 1
-    wrong = [line.split(":")[0] for line in out.splitlines() if line.startswith("WRONG")]
-    assert wrong == ["WRONG  settings", "WRONG  method ours", "WRONG  tables"]
+    wrong = [line.split(":")[0].split() for line in out.splitlines() if line.startswith("WRONG")]
+    assert wrong == [["WRONG", "settings"], ["WRONG", "method", "ours"], ["WRONG", "tables"]]

@@ -4,9 +4,9 @@ import shutil
 
 import pypdf
 import pytest
-from dashboards.documents import certificate, proposal
 
-from dashboards.site import render
+from dashboards import site
+from dashboards.queries import papers
 from tests.conftest import METHODS
 
 EDITION = f"concept-{METHODS[1]}"
@@ -45,28 +45,21 @@ def test_of_all_certificates(fails, herijk, data, built, tmp_path):
     line = lines.row(0, named=True)
     lost = f"certificate-{EDITION}-{line['fsn_no']}-{line['rowers']}{line['crew_class']}"
     command = ("certificate", "--edition", EDITION, "--out", tmp_path / "all.pdf")
-    fails(lost, certificate, "crew_name", lambda one, _: one["tow_id"] == line["tow_id"], *command)
+    fails(lost, papers, "curve_of", lambda one: one["tow_id"] == line["tow_id"], *command)
     assert len(pypdf.PdfReader(tmp_path / "all.pdf").pages) == lines.height - 1
     assert herijk("export", *command, "--data", data)[0] == 0
     assert not (data / "unforeseen" / f"{lost}.txt").exists()
 
 
-@pytest.mark.parametrize(
-    ("lost", "owner", "name", "command", "made"),
-    [
-        (f"proposal-{METHODS[1]}", proposal, "_types", ("proposal", METHODS[1]), False),
-    ],
-)
-def test_of_a_proposal(lost, owner, name, command, made, fails, tmp_path):
+def test_of_a_proposal(fails, tmp_path):
     out = tmp_path / "out.pdf"
-    fails(lost, owner, name, lambda *_: True, *command, "--out", out)
-    assert out.exists() == made
+    command = ("proposal", METHODS[1], "--out", out)
+    fails(f"proposal-{METHODS[1]}", papers, "causes_of", lambda *_: True, *command)
+    assert not out.exists()
 
 
 def test_of_pages(fails, tmp_path):
     command = ("pages", "--out", tmp_path / "pages")
-    fails(
-        "page-boats.html", render, "_write_page", lambda _, p, *__: p.path == "boats.html", *command
-    )
+    fails("page-boats.html", site, "render_page", lambda path, *_: path == "boats.html", *command)
     assert not (tmp_path / "pages" / "boats.html").exists()
     assert (tmp_path / "pages" / "register.html").exists()

@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import polars as pl
 import pytest
-from dashboards.speech import Speech
-from dashboards.statements.rebuild import LastRun, judged, mail, verdict
 from python_calamine import load_workbook
 
+from dashboards.reports import LastRun, make_report_pages, write_mail
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.errors import MissingKnowledgeError
@@ -180,19 +179,21 @@ def test_flagged_tows_are_counted_wherever_a_rebuild_is_reported(built):
     for status in ("accepted", "flagged", "rejected"):
         assert changes.judged[status] == (statuses == status).sum()
     page = (built.data / "report" / "latest.en.html").read_text("utf-8")
-    assert judged(changes)(Speech("en")) in page
-    two_of_three = {"method": method, "accepted": 1, "flagged": 2, "rejected": 0}
-    changes = replace(changes, judged=two_of_three)
-    assert "1 accepted, 2 flagged" in judged(changes)(Speech("en"))
-    assert "In order" not in verdict(changes, [])(Speech("en"))
+    assert f"{changes.judged['accepted']} accepted, {changes.judged['flagged']} flagged" in page
     run = LastRun("2026-11-20T03:00:00+01:00", "unchanged", "", "2026-11-18T03:01:00+01:00")
-    text = mail(changes, [], simulated=False, run=run)[1]
+
+    def make_page(judged):
+        pages = make_report_pages(built.store, replace(changes, judged=judged), [], run)
+        return pages["latest.en.html"]
+
+    two_of_three = {"method": method, "accepted": 1, "flagged": 2, "rejected": 0}
+    assert "1 accepted, 2 flagged" in make_page(two_of_three)
+    assert "In order" not in make_page(two_of_three)
+    assert "In order" in make_page(two_of_three | {"flagged": 0})
+    text = write_mail(replace(changes, judged=two_of_three), [], simulated=False, run=run)[1]
     assert "nog te beoordelen" in text
     assert "2026-11-20 03:00. Er was niets veranderd." in text
     assert "Laatste verandering: 2026-11-18 03:01." in text
-    assert "In order" in verdict(replace(changes, judged=two_of_three | {"flagged": 0}), [])(
-        Speech("en")
-    )
 
 
 def test_a_flag_of_a_line_is_shown_wherever_the_line_is(herijk, built):

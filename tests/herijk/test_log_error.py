@@ -12,8 +12,8 @@ import pytest
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.reading import read_shipped_method
+from tests.tables import fill_database
 from tests.warehouse.edition_bench import EditionBench
-from warehouse.derive.database import build_database
 
 SETTINGS = WorldSettings((2009, 2010, 2011, 2014, 2015, 2016), 5, 20, seed=6)
 METHOD = "rebased"
@@ -53,8 +53,8 @@ def hard(tmp_path_factory):
     bench.rebuild((read_shipped_method(METHOD),))
     asked = ("log_factors", "season_links", "season_diagnosis")
     tables = {name: bench.store.read(name, METHOD) for name in asked}
-    tables |= {"about": pl.DataFrame({"key": ["simulated"], "value": ["true"]})}
-    build_database(bench.store.database, tables | {"tows": bench.store.read("tows")})
+    tables |= {name: bench.store.read(name) for name in ("tows", "methods")}
+    fill_database(bench.store, tables)
     return bench
 
 

@@ -5,14 +5,13 @@ The other boats of the last season got other numbers, so that one boat alone was
 
 import re
 
-import polars as pl
 import pytest
 
 from herijk.simulate import Defects, WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.method.reading import read_shipped_method
+from tests.tables import fill_database
 from tests.warehouse.edition_bench import EditionBench
-from warehouse.derive.database import build_database
 from warehouse.queries.assess import assess
 
 SETTINGS = WorldSettings(
@@ -52,8 +51,8 @@ def towed(tmp_path_factory):
     bench.change_force(repeat.tow_id, lambda newtons: OFF * newtons)
     bench.rebuild((METHOD,))
     tables = {name: bench.store.read(name, METHOD.name) for name in ASKED}
-    tables |= {"about": pl.DataFrame({"key": ["simulated"], "value": ["true"]})}
-    build_database(bench.store.database, tables | {"tows": bench.store.read("tows")})
+    tables |= {name: bench.store.read(name) for name in ("tows", "methods")}
+    fill_database(bench.store, tables)
     return bench, repeat, sound
 
 
@@ -76,7 +75,7 @@ def test_seasons_names_the_boat_and_both_explanations(towed, herijk):
     bench, repeat, _ = towed
     status, out, err = herijk("seasons", "--data", bench.data)
     assert (status, err) == (0, "")
-    shown = f"2017 +scale of the load cell +cannot be told .*{repeat.boat.fsn_no} +boat altered"
+    shown = f"2017 +1 +scale of the load cell +cannot be told .*{repeat.boat.fsn_no} +boat altered"
     assert re.search(shown, out)
     status, out, _ = herijk("seasons", "--data", bench.data, "--json")
     assert status == 0

@@ -4,8 +4,8 @@ import datetime as dt
 
 import polars as pl
 import pytest
-from dashboards.labels import CODES
 
+from dashboards.words import CODES
 from pipeline.register.due import NOT_RACED
 from pipeline.register.register import draft_name
 from warehouse.store.decisions import FILE_NAME
