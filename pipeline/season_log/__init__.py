@@ -22,6 +22,6 @@ Not here: how Cw of a tow is computed, prescribed corrections (never data here),
 with the factors.
 """
 
-from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors, first_estimate
+from pipeline.season_log.estimate import SeasonFactors, estimate_roughly, estimate_season_factors
 
-__all__ = ["SeasonFactors", "estimate_season_factors", "first_estimate"]
+__all__ = ["SeasonFactors", "estimate_roughly", "estimate_season_factors"]

@@ -142,12 +142,12 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
     unresolved = next((one for one in posterior.unresolved if one.place in places), None)
     if unresolved is not None:
         bounds.append(estimate + unresolved.size)
-        probability = max(probability or 0.0, _probability_beside_alteration(fit))
+        probability = max(probability or 0.0, _compute_probability_beside_alteration(fit))
     if probability is not None and probability >= DOUBT_PROBABILITY:
         likeliest = effects.faults[candidates[posterior.probability[candidates].argmax()]]
         first_tow = effects.listed[likeliest].first_tow
 
-    distance = None if name == LOG_SCALE else _distance_from_prior(fit, columns)
+    distance = None if name == LOG_SCALE else _measure_distance_from_prior(fit, columns)
     if not fit.has_converged:
         verdict = NOT_SETTLED
     elif name == LOG_SCALE:
@@ -176,7 +176,7 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
     }
 
 
-def _probability_beside_alteration(fit: Fit) -> float:
+def _compute_probability_beside_alteration(fit: Fit) -> float:
     """Return the probability that an instrument failed and not that the one boat was altered.
 
     Both explain the boat's tows equally well, so their prior probabilities decide.
@@ -185,7 +185,7 @@ def _probability_beside_alteration(fit: Fit) -> float:
     return float(fault / (fault + fit.share[0]))
 
 
-def _distance_from_prior(fit: Fit, columns: IntArray) -> float | None:
+def _measure_distance_from_prior(fit: Fit, columns: IntArray) -> float | None:
     """Return how far the archive moves an effect that is always there, in standard deviations.
 
     Args:

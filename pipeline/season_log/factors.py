@@ -55,7 +55,7 @@ def make_factor_table(
     weight = mean_design @ fit.covariance
     from_prior = weight**2 / fit.prior_variance
     is_gps_scale = fit.name == GPS_SCALE
-    gps_variance = _variance_from_gps(fit, weight) + from_prior[:, is_gps_scale].sum(axis=1)
+    gps_variance = _compute_variance_from_gps(fit, weight) + from_prior[:, is_gps_scale].sum(axis=1)
     assumed_variance = from_prior[:, ~is_gps_scale].sum(axis=1)
     repeat_variance = np.maximum(variance - gps_variance - assumed_variance, 0.0)
 
@@ -89,7 +89,7 @@ def make_factor_table(
     return factors.drop("prior_ln", "prior_sd", "has_gps", "calibrated"), covariance
 
 
-def _variance_from_gps(fit: Fit, weight: FloatArray) -> FloatArray:
+def _compute_variance_from_gps(fit: Fit, weight: FloatArray) -> FloatArray:
     """Return the part of the variance of ln factors that is the scatter of plain GPS, (logs,).
 
     Args:

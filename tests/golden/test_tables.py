@@ -19,7 +19,7 @@ from dashboards.site.pages import method_names, shared_pages
 from dashboards.speech import Speech
 from dashboards.statements import Statement
 from herijk.simulate import WorldSettings, world_settings
-from pipeline.assessment.seen import Seen
+from pipeline.assessment.tow_summary import summarize_tows
 from pipeline.blocks.tows import Tows
 from pipeline.method.definition import shipped_method
 from pipeline.recompute.recompute import recompute
@@ -60,9 +60,9 @@ def with_two_files() -> dict[str, pl.DataFrame]:
         world_settings("two-files", seasons=(2010, 2014), tows_per_season=8, rate_hz=10, seed=3)
     )
     made = recompute(shipped_method("rebased"), world.tows, world.blocks)
-    seen = vars(Seen(Tows.of(world.tows, world.blocks)))
-    arrays = {name: pl.Series(values) for name, values in seen.items() if name != "tows"}
-    return frames(made) | {"seen": pl.DataFrame(arrays).fill_nan(None)}
+    summary = vars(summarize_tows(Tows.of(world.tows, world.blocks)))
+    arrays = {name: pl.Series(values) for name, values in summary.items() if name != "tows"}
+    return frames(made) | {"tow_summary": pl.DataFrame(arrays).fill_nan(None)}
 
 
 def of_a_fleet() -> dict[str, pl.DataFrame]:
