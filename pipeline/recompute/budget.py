@@ -6,6 +6,7 @@ own points and holds if its log factors are right.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -40,11 +41,48 @@ FORCE_SD: Final = (_LOAD_CELL_ERROR**2 + pl.col("load_cell_sd") ** 2).sqrt()
 is not corrected by the record, so its error is part of the uncertainty (GUM F.2.4.5)."""
 
 
-def get_assumed(factors: SeasonFactors | None) -> Assumed:
-    """Return what remains assumed beside what the season factors show."""
+def get_assumed(c: Computed, factors: SeasonFactors | None) -> Assumed:
+    """Return what remains assumed beside what the archive shows."""
     if factors is None:
         return Assumed()
-    return Assumed().replace_by_repeats(factors.tow_sd, factors.tow_zero_n, factors.calibration_sd)
+    assumed = replace(Assumed(), wind_coefficient=estimate_wind_coefficient_sd(c))
+    return assumed.replace_by_repeats(factors.tow_sd, factors.tow_zero_n, factors.calibration_sd)
+
+
+def estimate_wind_coefficient_sd(c: Computed) -> float:
+    """Return the uncertainty of the drag coefficient in air, as runs out and back show it.
+
+    Where the coefficient is off by d, runs out and back of a tow differ by d (felt out - felt back)
+    / Cw. d follows by least squares over all tows, its variance by the sandwich over tows (Huber
+    1967), and both are drawn to the prior 0 ± `Assumed.wind_coefficient`. Nothing is corrected, so
+    that d itself is part of the uncertainty (GUM, F.2.4.5).
+    """
+    residual, is_used, on_curve = _compute_residuals(c)
+    tows = c.tows
+    is_usable = is_used & (tows.trusted & tows.measured("wind"))[:, None]
+    direction = tows.by_tow(tows.direction.astype(np.float64))
+    is_out, is_back = is_usable & (direction > 0), is_usable & (direction < 0)
+    felt_per_unit = tows.by_tow(c.by_true_speed(c.means.air.ahead + c.means.air.behind))
+    felt_ratio = felt_per_unit / np.where(is_used, on_curve, 1.0)
+    has_both_ways = is_out.any(axis=1) & is_back.any(axis=1)
+    difference = np.where(has_both_ways, _contrast(residual, is_out, is_back), 0.0)
+    slope = np.where(has_both_ways, _contrast(felt_ratio, is_out, is_back), 0.0)
+
+    prior_variance = Assumed().wind_coefficient ** 2
+    information = (slope**2).sum()
+    if information == 0.0:
+        return Assumed().wind_coefficient
+    error = (slope * difference).sum() / information
+    variance = ((slope * (difference - slope * error)) ** 2).sum() / information**2
+    shrinkage = prior_variance / (prior_variance + variance)
+    return float(np.hypot(shrinkage * error, np.sqrt(shrinkage * variance)))
+
+
+def _contrast(values: FloatArray, is_out: BoolArray, is_back: BoolArray) -> FloatArray:
+    """Return the mean of (tows, points) values out less that of those back, (tows,)."""
+    out = np.where(is_out, values, 0.0).sum(axis=1) / np.maximum(is_out.sum(axis=1), 1)
+    back = np.where(is_back, values, 0.0).sum(axis=1) / np.maximum(is_back.sum(axis=1), 1)
+    return np.asarray(out - back)
 
 
 def estimate_scatter(c: Computed, pooled: bool) -> curve.Scatter:

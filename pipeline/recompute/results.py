@@ -86,7 +86,7 @@ def as_tables(
     run_points = choose_repeated_runs(named(_make_run_points(c)))
     speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
     inputs = make_budget_inputs(c, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
-    components = make_budget(inputs, get_assumed(estimated))
+    components = make_budget(inputs, get_assumed(c, estimated))
     bounds = combine(components)
     at_v0 = components.filter(at_declared)
     curves = named(_make_curves(c, bounds.filter(at_declared), pooled))
