@@ -49,6 +49,8 @@ SEASON_LEVEL: Final = "season_level"
 """What all tows of a season have in common (`season_levels`), among the instruments."""
 LEVEL_CAUSES: Final = ("mass_on_board", "water_depth", "waves", "force_not_linear")
 """What a level of a season may be that is no fault of the model."""
+CAUSES_BESIDE_FAULT: Final = {FORCE: LEVEL_CAUSES, ZERO: ("force_not_linear",)}
+"""What a fault of the load cell may be instead that is no fault of the model."""
 MAX_LEVEL: Final = np.log(1.02)
 """Level in ln Cw from which a person should look: two tows agree within 2 % (P2015)."""
 MAX_LEVEL_HALF_WIDTH: Final = 2.0 * MAX_LEVEL
@@ -159,8 +161,8 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
         verdict = _judge_fault(probability, distance, would_show)
     has_too_few_boats = unresolved is not None or not posterior.has_boats[candidates].all()
     confusions = _list_confusions(posterior, columns, candidates, has_too_few_boats)
-    if name == FORCE and verdict == FAULT:
-        confusions += [cause for cause in LEVEL_CAUSES if cause not in confusions]
+    if verdict == FAULT:
+        confusions += CAUSES_BESIDE_FAULT.get(name, ())
     return {
         "unit": "N" if name in (ZERO, ZERO_DRIFT) else "1",
         "estimate": estimate,
