@@ -15,7 +15,12 @@ import polars as pl
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.channels import BACK, OUT
-from pipeline.recompute.budget import FORCE_SD, estimate_files_log_sd, estimate_pure_error
+from pipeline.recompute.budget import (
+    FORCE_SD,
+    estimate_files_log_sd,
+    estimate_pure_error,
+    estimate_scatter,
+)
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
 from pipeline.season_log import SeasonFactors, estimate_roughly, estimate_season_factors
@@ -103,13 +108,16 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     points = _make_water_points(c)
     curves = curve.fit(points)
     errors = curve.covariance(points, curves, estimate_pure_error(c), log_speed)
+    with_misfit = curve.covariance(points, curves, estimate_scatter(c, pooled=True), log_speed)
     cw_as_read = curves.cw_at(log_speed)
     is_sound = curves.converged & np.isfinite(cw_as_read) & (cw_as_read > 0)
     cw = np.where(is_sound, cw_as_read, 1.0)
     r = np.where(is_sound, curves.s_s2_m2 * log_speed**2, 0.0)
     q = r / (1.0 - r)
 
-    # Random errors: scatter of the points; in combined tows, logs that differ; unmeasured wind.
+    # Random errors: scatter of the points; in combined tows, logs that differ; unmeasured wind. The
+    # misfit of the hull is no error of its level, but one of its bend: at the speeds that another
+    # log reads, the same hull has another.
     has_errors = is_sound & np.isfinite(errors.c0_variance_kg2_m2)
     log_sd = estimate_files_log_sd(c)
     ln_cw_by_log = 2.0 + 2.0 * q
@@ -118,7 +126,8 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     wind_sd = np.where(tows.measured("wind"), 0.0, still_air * c.air.unrecorded_sd) / cw
     point_variance = np.where(has_errors, errors.c0_variance_kg2_m2 / cw**2, 1.0)
     ln_cw_sd = np.sqrt(point_variance + (ln_cw_by_log * log_sd) ** 2 + wind_sd**2)
-    q_sd = np.hypot(np.where(has_errors, np.sqrt(errors.q_variance), 1.0), q_by_log * log_sd)
+    q_variance = np.maximum(errors.q_variance, with_misfit.q_variance)
+    q_sd = np.hypot(np.where(has_errors, np.sqrt(q_variance), 1.0), q_by_log * log_sd)
     covariance = np.where(has_errors, errors.c0_q_covariance_kg_m / cw, 0.0)
     covariance = covariance + ln_cw_by_log * q_by_log * log_sd**2
 

@@ -246,7 +246,8 @@ def _list_season_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
             yield Effect(ZERO_DRIFT, year, 0, ramp, priors.zero_fault_n, probability=p)
     for year, _ in in_seasons[1:]:
         later = (archive.season >= year).astype(np.float64)
-        yield Effect(FLEET, year, 0, later, priors.fleet_fault_sd, probability=p)
+        fleet = priors.fleet_probability
+        yield Effect(FLEET, year, 0, later, priors.fleet_fault_sd, probability=fleet)
 
 
 def _list_log_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:

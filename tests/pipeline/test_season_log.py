@@ -144,7 +144,7 @@ def test_a_factor_that_repeat_tows_contradict_is_refused():
     world, _ = estimated(CLEAN, 1000)
     solved = faults.find_posterior(build_model(build_archive(world.tows, PRIORS), PRIORS))
     assert not solved.is_refused.any()
-    value = solved.fit.value + 0.04 * (np.arange(len(solved.fit.value)) == 0)  # the log of 2009
+    value = solved.fit.value + 0.06 * (np.arange(len(solved.fit.value)) == 0)  # the log of 2009
     ln_factor = solved.fit.covariate @ np.where(solved.fit.is_log, value, 0.0)
     astray = replace(solved.fit, value=value, linear=solved.fit.model.linearize_at(ln_factor))
     assert find_refused(astray).tolist() == [True] + 4 * [False]
