@@ -1,6 +1,6 @@
 """The checks of the assessment as one table of rules: code, what is measured, limits, sentence.
 
-What each measures is an expression over the facts of a tow that `pipeline.assessment.assess`
+What each measures is an expression over the measures of a tow that `pipeline.assessment.assess`
 gathers. Nothing here needs Polars: methods and labels name checks too. Where a limit comes from is
 in the table of docs/method-details.md, 10.
 
@@ -44,11 +44,11 @@ class Check(NamedTuple):
     last_season: int | None = None
 
     def limits(self, crew_class: str) -> tuple[float | None, float | None]:
-        """Lowest and highest for a class."""
-        return _of_class(self.lowest, crew_class), _of_class(self.highest, crew_class)
+        """Return the lowest and highest limit for a class."""
+        return _get_limit(self.lowest, crew_class), _get_limit(self.highest, crew_class)
 
 
-def _of_class(limit: Limit, crew_class: str) -> float | None:
+def _get_limit(limit: Limit, crew_class: str) -> float | None:
     return limit[crew_class] if isinstance(limit, dict) else limit
 
 
@@ -59,8 +59,8 @@ WAYS_LIMIT: Final = 0.05
 ROWER_KG: Final = ({"H": 81.0, "D": 64.0}, {"H": 114.0, "D": 90.0})
 
 
-def _told_by_all(code: str, sentence: Sentence) -> Check:
-    """What all other tows say of a tow (`pipeline.assessment.plausibility`)."""
+def _make_plausibility_check(code: str, sentence: Sentence) -> Check:
+    """Return the check of what all other tows say of a tow (`plausibility`)."""
     verdict = "doubts" if code.endswith("_not_plausible") else "unusual"
     return Check(code, f"array_contains({verdict}, '{code}')", sentence, highest=0.0)
 
@@ -82,12 +82,12 @@ CHECKS: Final = (
     Check("unusual_calibration", "calibration_factor", say("unusual calibration"), 0.98, 1.02),
     Check("log_not_linear", "log_slope", say("log not in proportion"), -0.015, 0.015),
     # The samples beside all other tows
-    _told_by_all("force_not_plausible", say("force cannot be right")),
-    _told_by_all("wind_not_plausible", say("wind cannot be right")),
-    _told_by_all("speed_not_plausible", say("speed cannot be right")),
-    _told_by_all("force_unusual", say("force stands out")),
-    _told_by_all("wind_unusual", say("wind stands out")),
-    _told_by_all("speed_unusual", say("speed stands out")),
+    _make_plausibility_check("force_not_plausible", say("force cannot be right")),
+    _make_plausibility_check("wind_not_plausible", say("wind cannot be right")),
+    _make_plausibility_check("speed_not_plausible", say("speed cannot be right")),
+    _make_plausibility_check("force_unusual", say("force stands out")),
+    _make_plausibility_check("wind_unusual", say("wind stands out")),
+    _make_plausibility_check("speed_unusual", say("speed stands out")),
     Check("season_in_doubt", "season_doubted", say("season's instrument in doubt"), None, 0.0),
     Check(
         "instrument_or_boat", "alone_shows_fault", say("instrument off or boat altered"), None, 0.0

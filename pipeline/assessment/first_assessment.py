@@ -16,9 +16,9 @@ from typing import Final, NamedTuple
 import numpy as np
 import polars as pl
 
-from pipeline.assessment.assess import PER_RUN
 from pipeline.assessment.checks import CHECK
-from pipeline.assessment.run_choice import KEEP, KIND
+from pipeline.assessment.repeated_runs import KEEP, KIND
+from pipeline.assessment.run_measures import PER_RUN
 from pipeline.assessment.run_outliers import MAX_OFF_CURVE_RATIO, find_runs_off_curve
 from pipeline.quantiles import differ_beyond_intervals
 from pipeline.run_reasons import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_SELECTED
@@ -236,9 +236,9 @@ def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
         elif check == "out_and_back_differ":
             runs = off_curve
         elif check == "runs_set_aside":
-            runs = _runs_lost(tow)
+            runs = _list_lost_runs(tow)
         of_others = tow.others_of_season.filter(check=check)
-        others_median = _median(of_others["observed"])
+        others_median = _take_median(of_others["observed"])
         if (
             check in NOT_IN_CW
             and of_others.height >= MIN_OTHERS
@@ -257,15 +257,15 @@ def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
             others=of_others.height,
             others_median=others_median,
         )
-        yield _with_sizes(found, tow)
+        yield _add_sizes(found, tow)
 
 
-def _median(values: pl.Series) -> float | None:
+def _take_median(values: pl.Series) -> float | None:
     median = values.median()
     return median if isinstance(median, float) else None
 
 
-def _with_sizes(found: Finding, tow: QuayTow) -> Finding:
+def _add_sizes(found: Finding, tow: QuayTow) -> Finding:
     """Return a finding with the sizes that it is about, and the change of Cw that they explain."""
     column, before = SIZES.get(found.finding), tow.boat_before
     if found.finding in CHANGED:
@@ -283,7 +283,7 @@ def _with_sizes(found: Finding, tow: QuayTow) -> Finding:
     )
 
 
-def _runs_lost(tow: QuayTow) -> list[int]:
+def _list_lost_runs(tow: QuayTow) -> list[int]:
     return sorted(tow.set_aside.filter(lost="run")["run"].drop_nulls().unique().to_list())
 
 

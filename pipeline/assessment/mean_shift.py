@@ -17,15 +17,15 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.choice import first_largest
 from pipeline.quantiles import MAD_TO_SD
 
-NARROWEST: Final = 0.5
+MIN_SCALE: Final = 0.5
 """An archive may scatter less than is assumed; a limit shrinks to half at most."""
 
-SAME_DIRECTION: Final = 1e-6
-"""What is left of a direction of which so little is, was taken out with another."""
+MIN_REMAINING_SHARE: Final = 1e-6
+"""Share of the information on a candidate under which another that was taken out explains it."""
 
-FEWEST_FOR_SCALE: Final = 10
-AT_A_TIME: Final = 2048
-"""Candidates that are weighed together: those of ten thousand tows would take gigabytes."""
+MIN_TOWS_FOR_SCALE: Final = 10
+CANDIDATE_BATCH: Final = 2048
+"""Number of candidates scored per batch; bounds the memory of the score matrix."""
 
 
 class Observations(NamedTuple):
@@ -44,8 +44,8 @@ class Observations(NamedTuple):
     shared_variance: FloatArray
 
     @classmethod
-    def joined(cls, parts: Sequence[Self]) -> Self:
-        """Observations of several kinds, which share nothing."""
+    def concatenate(cls, parts: Sequence[Self]) -> Self:
+        """Return the observations of several kinds, which share nothing."""
         values, variance, shared, shared_variance = zip(*parts, strict=True)
         return cls(
             np.concatenate(values),
@@ -60,21 +60,24 @@ class Candidates(NamedTuple):
 
     Attributes:
         directions: one per column, sparse, shape (n, candidates).
-        single: whether a column is of one tow, whose scatter the archive itself shows.
-        least: smallest size that matters, shape (candidates,).
-        gross: size that no scatter explains, however wide, shape (candidates,).
+        is_single: whether a column is of one tow, whose scatter the archive itself shows.
+        min_size: smallest size that matters, shape (candidates,).
+        gross_size: size that no scatter explains, however wide, shape (candidates,).
     """
 
     directions: "scipy.sparse.csc_array"
-    single: BoolArray
-    least: FloatArray
-    gross: FloatArray
+    is_single: BoolArray
+    min_size: FloatArray
+    gross_size: FloatArray
 
 
-class Found(NamedTuple):
-    """A shift: place of the candidate, its size, and the standard deviation of that.
+class MeanShift(NamedTuple):
+    """A candidate that has shifted.
 
     Attributes:
+        place: of the candidate.
+        size: of the shift.
+        sd: standard deviation of the size.
         clear: whether it is beyond the limit from which chance is ruled out.
     """
 
@@ -84,93 +87,102 @@ class Found(NamedTuple):
     clear: bool
 
 
-def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) -> list[Found]:
-    """Shifts beyond so many standard deviations, the clearest first.
+def find_mean_shifts(
+    observations: Observations, candidates: Candidates, reject_at: float, flag_at: float
+) -> list[MeanShift]:
+    """Return the candidates whose standardized size exceeds the thresholds, the clearest first.
 
     Where tows scatter more or less than is assumed, the limits move with them. Shifts too large to
     be scatter come out before that is measured: a few of these make all others look scattered.
 
     Args:
-        seen: what is seen.
-        may: what may have shifted.
-        limit: from which chance is ruled out.
-        look: from which a single tow is unusual, judged when all clear shifts are taken out.
+        observations: deviations from what is expected, and how they scatter.
+        candidates: what may have shifted.
+        reject_at: standard deviations from which chance is ruled out.
+        flag_at: standard deviations from which a single tow is unusual, judged when all clear
+            shifts are taken out.
     """
-    state = _MeanShifts(seen, may)
-    shifts = state.take_out(limit, np.maximum(may.least, may.gross), clear=True)
-    scales = state.scales()
-    shifts += state.take_out(limit * scales, may.least, clear=True)
-    limits = np.where(may.single, look * scales, np.inf)
-    return shifts + state.take_out(limits, may.least, clear=False)
+    search = _Search(observations, candidates)
+    gross = np.maximum(candidates.min_size, candidates.gross_size)
+    shifts = search.take_out(reject_at, gross, clear=True)
+    scales = search.measure_scales()
+    shifts += search.take_out(reject_at * scales, candidates.min_size, clear=True)
+    limits = np.where(candidates.is_single, flag_at * scales, np.inf)
+    return shifts + search.take_out(limits, candidates.min_size, clear=False)
 
 
-class _MeanShifts:
-    """What the candidates show given all that was taken out before.
+class _Search:
+    """The state of the search: what the candidates show given all that was taken out before.
 
     The inverse of the covariance is by Woodbury's identity. What is factorised has a row per random
     effect, and is sparse: boats have tows in few seasons.
     """
 
-    def __init__(self, seen: Observations, may: Candidates) -> None:
-        self._may, self._effects = may, seen.shared
-        self._noise = scipy.sparse.diags_array(1.0 / seen.variance)
+    def __init__(self, observations: Observations, candidates: Candidates) -> None:
+        self._candidates, self._effects = candidates, observations.shared
+        self._noise = scipy.sparse.diags_array(1.0 / observations.variance)
         within = self._effects.T @ self._noise @ self._effects
-        prior = scipy.sparse.diags_array(1.0 / seen.shared_variance)
+        prior = scipy.sparse.diags_array(1.0 / observations.shared_variance)
         self._within = scipy.sparse.linalg.splu(
             (within + prior).tocsc(), permc_spec="MMD_AT_PLUS_A"
         )
         self._taken: list[tuple[FloatArray, float]] = []
-        self._score = np.asarray(may.directions.T @ self._precision_times(seen.values))
-        starts = range(0, may.directions.shape[1], AT_A_TIME)
-        parts = [self._weights(may.directions[:, k : k + AT_A_TIME]) for k in starts]
-        self._at_first = np.concatenate(parts)
-        self._weight = self._at_first.copy()
+        self._score = np.asarray(
+            candidates.directions.T @ self._apply_precision(observations.values)
+        )
+        starts = range(0, candidates.directions.shape[1], CANDIDATE_BATCH)
+        parts = [
+            self._compute_information(candidates.directions[:, k : k + CANDIDATE_BATCH])
+            for k in starts
+        ]
+        self._first_information = np.concatenate(parts)
+        self._information = self._first_information.copy()
 
-    def _precision_times(self, values: FloatArray) -> FloatArray:
+    def _apply_precision(self, values: FloatArray) -> FloatArray:
         scaled = np.asarray(self._noise @ values)
         effects = self._within.solve(np.asarray(self._effects.T @ scaled))
         return np.asarray(scaled - self._noise @ (self._effects @ effects))
 
-    def _weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
-        """Gives g'Pg of each direction, before anything is taken out."""
+    def _compute_information(self, directions: "scipy.sparse.csc_array") -> FloatArray:
+        """Return g'Pg of each direction, before anything is taken out."""
         scaled = self._noise @ directions
         alone = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
         across = (self._effects.T @ scaled).toarray()
         return np.asarray(alone - (across * self._within.solve(across)).sum(axis=0))
 
     @property
-    def _open(self) -> BoolArray:
-        """Which candidates are not taken out already, nor the same as one that is."""
-        return np.asarray(self._weight > SAME_DIRECTION * self._at_first)
+    def _is_open(self) -> BoolArray:
+        """Candidates that are not taken out already, nor the same as one that is."""
+        return np.asarray(self._information > MIN_REMAINING_SHARE * self._first_information)
 
-    def scales(self) -> FloatArray:
-        """How much wider or narrower tows scatter than is assumed; groups never narrower."""
-        single = self._may.single & self._open
-        if single.sum() < FEWEST_FOR_SCALE:
+    def measure_scales(self) -> FloatArray:
+        """Return the scatter of tows over what is assumed, (candidates,); of groups at least 1."""
+        single = self._candidates.is_single & self._is_open
+        if single.sum() < MIN_TOWS_FOR_SCALE:
             return np.ones(len(single))
-        z = self._score[single] / np.sqrt(self._weight[single])
+        z = self._score[single] / np.sqrt(self._information[single])
         scatter = MAD_TO_SD * float(np.median(np.abs(z)))
-        return np.where(self._may.single, max(scatter, NARROWEST), max(scatter, 1.0))
+        return np.where(self._candidates.is_single, max(scatter, MIN_SCALE), max(scatter, 1.0))
 
     def take_out(
-        self, limits: FloatArray | float, least: FloatArray, *, clear: bool
-    ) -> list[Found]:
-        """Takes out what is beyond its limit in standard deviations, the clearest first."""
-        taken: list[Found] = []
+        self, limits: FloatArray | float, min_size: FloatArray, *, clear: bool
+    ) -> list[MeanShift]:
+        """Take out and return what is beyond its limit in standard deviations, clearest first."""
+        taken: list[MeanShift] = []
         while True:
-            sd = 1.0 / np.sqrt(np.where(self._open, self._weight, 1.0))
+            sd = 1.0 / np.sqrt(np.where(self._is_open, self._information, 1.0))
             size = self._score * sd**2
             beyond = np.abs(size) / (sd * limits)
-            beyond[~self._open | (np.abs(size) < least)] = 0.0
+            beyond[~self._is_open | (np.abs(size) < min_size)] = 0.0
             best = int(first_largest(beyond))
             if beyond[best] < 1.0:
                 return taken
-            taken.append(Found(best, float(size[best]), float(sd[best]), clear))
-            direction = self._may.directions[:, [best]].toarray()[:, 0]
-            moved = self._precision_times(direction)
+            taken.append(MeanShift(best, float(size[best]), float(sd[best]), clear))
+            direction = self._candidates.directions[:, [best]].toarray()[:, 0]
+            moved = self._apply_precision(direction)
             for before, inverse in self._taken:
                 moved -= before * (before @ direction) * inverse
             self._taken.append((moved, 1.0 / float(moved @ direction)))
-            share = np.asarray(self._may.directions.T @ moved)
+            share = np.asarray(self._candidates.directions.T @ moved)
             self._score = self._score - share * size[best]
-            self._weight = self._weight - share**2 * sd[best] ** 2
+            self._information = self._information - share**2 * sd[best] ** 2

@@ -18,44 +18,49 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
-from pipeline.assessment.mean_shift import Candidates, Observations, find_shifts
-from pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
+from pipeline.assessment.mean_shift import Candidates, Observations, find_mean_shifts
+from pipeline.assessment.tow_summary import (
+    MIN_WATER_SHARE,
+    USUAL_BEND,
+    TowSummary,
+    summarize_tows,
+)
 from pipeline.blocks.tows import Tows
 from pipeline.messages import say
 from pipeline.tables.keys import LINE
 
-LIMIT: Final = 4.5
+REJECT_AT_SD: Final = 4.5
 """Standard deviations from which a shift is not chance: one in 300,000, as thousands are tried."""
 
-LOOK: Final = {"speed": 3.0}
+FLAG_AT_SD: Final = {"speed": 3.0}
 """Standard deviations from which a single tow is unusual: somebody has to look, but its numbers
 stand. One sound tow in 400, if all were as Gaussian as the model. Of force and wind so little says
 nothing: of 189 tows whose force was 3 standard deviations off, 24 % had a Cw that was over 3 % off;
 of 152 whose speed was, 95 % (64 simulated archives)."""
 
-FEWEST: Final = 3
+MIN_TOWS: Final = 3
 """Fewest tows for which a day, a season, either part of one, or an archive is judged as a whole."""
 
 GROSS: Final = np.log(1.6)
 """Shift of a logarithm that no boat explains: the widest spread within a type is far less."""
 
-_WITH_UNITS: Final = ("force", "wind")
+_HAS_UNITS: Final = ("force", "wind")
 """Quantities that a wrong unit shifts so far."""
 
 
-EXCHANGE_TOLERANCE: Final = 0.12
-"""How far a logarithm that is known exactly may lie from that of an exchange."""
+UNIT_TOLERANCE: Final = 0.12
+"""How far a logarithm that is known exactly may lie from that of a ratio of units."""
 
 Cause = tuple[str, ...]
 """A text, and what goes between its braces."""
 
 
 def _instead_of(unit: str, meant: str) -> Cause:
-    """A number in one unit that is read as in another."""
+    """Return the cause that a number in one unit is read as in another."""
     return say("{} instead of {}"), unit, meant
 
 
-_EXCHANGES: Final[dict[str, dict[Cause, float]]] = {
+_UNIT_RATIOS: Final[dict[str, dict[Cause, float]]] = {
     "force": {
         _instead_of("kgf", "N"): 9.80665,
         _instead_of("daN", "N"): 10.0,
@@ -106,7 +111,7 @@ cancels between out and back; gusts do not, and grow with the wind. One and a ha
 turbulence of a quarter leaves in six simulated runs."""
 SPEED: Final = Spread(tow=0.008, day=0.004, season=0.01, archive=0.01)
 
-LEAST: Final = {"force": 0.05, "zero": 0.0, "wind": 0.2, "vane": 0.2, "speed": 0.025}
+MIN_SIZE: Final = {"force": 0.05, "zero": 0.0, "wind": 0.2, "vane": 0.2, "speed": 0.025}
 """Smallest sizes that matter, however clear: smaller ones change Cw by less than a tow scatters."""
 
 
@@ -148,7 +153,7 @@ class Shift:
 
 
 def plausibility(tows: Tows) -> tuple[Shift, ...]:
-    """Judges every tow beside all others.
+    """Judge every tow beside all others.
 
     Args:
         tows: all tows of the archive with their runs.
@@ -157,59 +162,60 @@ def plausibility(tows: Tows) -> tuple[Shift, ...]:
         Shifts of force, wind and speed that the other tows rule out, the clearest first; then
         single tows that are only unusual.
     """
-    seen = Seen(tows)
+    summary = summarize_tows(tows)
     return (
-        *_in_radians(seen),
-        *_turned(seen),
-        *_of_force(seen),
-        *_of_one(seen, "wind", seen.wind_ahead, WIND_AHEAD, _GROUPS),
-        *_of_one(seen, "vane", seen.wind_abeam, WIND_ABEAM, _GROUPS),
-        *_of_one(seen, "speed", seen.speed, SPEED, ("tow", "part")),
+        *_find_radians(summary),
+        *_find_turned_vanes(summary),
+        *_judge_force(summary),
+        *_judge_quantity(summary, "wind", summary.wind_ahead, WIND_AHEAD, _GROUPS),
+        *_judge_quantity(summary, "vane", summary.wind_abeam, WIND_ABEAM, _GROUPS),
+        *_judge_quantity(summary, "speed", summary.speed, SPEED, ("tow", "part")),
     )
 
 
 _RADIANS: Final = (_instead_of(say("radians"), say("degrees")),)
 TURNED: Final = (("a vane that is turned",),)
-_TURNED_DEG: Final = {"season": 45.0, "tow": 90.0}
+_MIN_TURN_DEG: Final = {"season": 45.0, "tow": 90.0}
 """Where the wind out and back together comes from at least, for the vane to be turned (inferred):
 in a single tow the true wind may change by as much as the boat's speed, in a season not."""
 _TURNED_WIND: Final = (0.6, 1.6)
 """That wind over the boat's speed: less or more is not the vane's doing alone."""
-_TURNED_ALIKE: Final = 0.9
+_MIN_ALIGNMENT: Final = 0.9
 """Length of the mean direction of tows that have one vane."""
 _GROUPS: Final = ("tow", "day", "season", "archive")
 
 
-def _in_radians(seen: Seen) -> Iterator[Shift]:
-    """Tows whose wind angles are radians; a season, where most of its tows are."""
-    tows, whose = (seen.tows.frame[name].to_numpy() for name in ("tow_id", "season"))
-    for season in np.unique(whose).tolist():
-        mine = whose == season
-        written_so = mine & seen.in_radians
-        if written_so.sum() >= FEWEST and written_so.sum() > 0.5 * mine.sum():
-            yield Shift("season", str(season), "vane", 1.0, 0.0, tuple(tows[mine]), _RADIANS)
+def _find_radians(summary: TowSummary) -> Iterator[Shift]:
+    """List tows whose wind angles are radians; a season, where most of its tows are."""
+    tow_id = summary.tows.frame["tow_id"].to_numpy()
+    season = summary.tows.frame["season"].to_numpy()
+    for year in np.unique(season).tolist():
+        is_own = season == year
+        is_odd = is_own & summary.is_in_radians
+        if is_odd.sum() >= MIN_TOWS and is_odd.sum() > 0.5 * is_own.sum():
+            yield Shift("season", str(year), "vane", 1.0, 0.0, tuple(tow_id[is_own]), _RADIANS)
         else:
-            for tow in tows[written_so]:
-                yield Shift("tow", str(tow), "vane", 1.0, 0.0, (str(tow),), _RADIANS)
+            for name in tow_id[is_odd]:
+                yield Shift("tow", str(name), "vane", 1.0, 0.0, (str(name),), _RADIANS)
 
 
-def _turned(seen: Seen) -> Iterator[Shift]:
-    """Tows, or seasons, whose vane is turned.
+def _find_turned_vanes(summary: TowSummary) -> Iterator[Shift]:
+    """List tows, or seasons, whose vane is turned.
 
     Out and back together leave the wind of the boat's own speed, which comes from straight ahead.
     """
-    felt = (1.0 + seen.wind_ahead) + 1j * seen.wind_abeam
+    felt = (1.0 + summary.wind_ahead) + 1j * summary.wind_abeam
     low, high = _TURNED_WIND
-    known = (np.abs(felt) > low) & (np.abs(felt) < high)  # NaN is not
-    tows = seen.tows.frame
+    is_known = (np.abs(felt) > low) & (np.abs(felt) < high)  # NaN is not
+    tows = summary.tows.frame
     turned: set[str] = set()
-    for kind, key, places in _groups(tows, ("season", "tow")):
-        mine = places[known[places]]
-        if kind == "season" and len(mine) < FEWEST:
+    for kind, key, places in _list_groups(tows, ("season", "tow")):
+        own = places[is_known[places]]
+        if kind == "season" and len(own) < MIN_TOWS:
             continue
-        mean = (felt[mine] / np.abs(felt[mine])).sum() / max(len(mine), 1)
+        mean = (felt[own] / np.abs(felt[own])).sum() / max(len(own), 1)
         angle = float(np.degrees(np.angle(mean)))
-        if abs(mean) < _TURNED_ALIKE or abs(angle) < _TURNED_DEG[kind]:
+        if abs(mean) < _MIN_ALIGNMENT or abs(angle) < _MIN_TURN_DEG[kind]:
             continue
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
         if not turned & {*ids}:
@@ -226,8 +232,8 @@ Candidate = tuple[str, Group, IntArray, FloatArray]
 """Quantity, group, and what a shift of it does to which observations."""
 
 
-def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
-    """The groups that are judged."""
+def _list_groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
+    """Return the groups of tows that are judged as a whole."""
     keys = {
         "tow": tows["tow_id"],
         "day": tows["tow_date"].cast(pl.String),
@@ -238,45 +244,46 @@ def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
         (kind, str(name), places)
         for kind in kinds
         if kind in keys
-        for name, places in _places(keys[kind])
-        if kind == "tow" or len(places) >= FEWEST
+        for name, places in _split_by_key(keys[kind])
+        if kind == "tow" or len(places) >= MIN_TOWS
     ]
-    return [*whole, *_parts(tows)] if "part" in kinds else whole
+    return [*whole, *_list_parts(tows)] if "part" in kinds else whole
 
 
-def _parts(tows: pl.DataFrame) -> Iterator[Group]:
-    """Seasons from each of their days on: a log may be replaced between two days."""
+def _list_parts(tows: pl.DataFrame) -> Iterator[Group]:
+    """List seasons from each of their days on: a log may be replaced between two days."""
     day = tows["tow_date"].cast(pl.String).to_numpy()
-    for _, places in _places(tows["season"].cast(pl.String)):
+    for _, places in _split_by_key(tows["season"].cast(pl.String)):
         for first in np.unique(day[places])[1:]:
             after = places[day[places] >= first]
-            if FEWEST <= len(after) <= len(places) - FEWEST:
+            if MIN_TOWS <= len(after) <= len(places) - MIN_TOWS:
                 yield ("part", str(first), after)
 
 
-def _grossly_off(tows: pl.DataFrame, level: FloatArray) -> Iterator[Group]:
-    """Tows of a season that lie grossly above, or below, the archive: half of a season in kgf.
+def _list_gross_tows(tows: pl.DataFrame, level: FloatArray) -> Iterator[Group]:
+    """List the tows of a season that lie grossly above, or below, the archive.
 
-    Without these a season of which only some are wrong looks wrong as a whole, by half as much.
+    Half of a season may be in kgf. Without these groups it looks wrong as a whole, by half as much.
     """
     off = level - np.median(level)
-    for season, places in _places(tows["season"].cast(pl.String)):
+    for season, places in _split_by_key(tows["season"].cast(pl.String)):
         for side in (-1.0, 1.0):
             some = places[side * off[places] > GROSS]
             if 1 < len(some) < len(places):
                 yield ("some", str(season), some)
 
 
-def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
+def _split_by_key(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
+    """List each key with the places where it stands."""
     names, rank = np.unique(key.to_numpy(), return_inverse=True)
     order, ends = np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))
     yield from zip(names, np.split(order, ends[:-1]), strict=True)
 
 
-def _observed(
+def _observe(
     tows: pl.DataFrame, values: FloatArray, spread: Spread, more_variance: FloatArray | float = 0.0
 ) -> Observations:
-    """A quantity of tows, with what those of a boat, season, day or type share."""
+    """Return a quantity of tows, with what those of a boat, season, day or type share."""
     state = pl.col("altered").cast(pl.Int32).cum_sum().over(LINE, order_by=["tow_date", "tow_id"])
     keyed = tows.with_columns(archive=pl.lit(0), state=state)
     kinds = (
@@ -287,108 +294,132 @@ def _observed(
         (("tow_date",), spread.day),
         (("boat_type",), spread.boat_type),
     )
-    of, variance = [], []
+    effects, variance = [], []
     for by, sd in kinds:
         if sd > 0.0 and set(by) <= set(keyed.columns):
             rank = keyed.select(pl.struct(by).rank("dense")).to_series().to_numpy() - 1
             each = np.ones(tows.height), (np.arange(tows.height), rank)
-            of.append(scipy.sparse.csr_array(each))
-            variance.append(np.full(of[-1].shape[1], sd**2))
+            effects.append(scipy.sparse.csr_array(each))
+            variance.append(np.full(effects[-1].shape[1], sd**2))
     noise = np.full(tows.height, spread.tow**2) + more_variance
     return Observations(
-        values, noise, scipy.sparse.hstack(of, format="csr"), np.concatenate(variance)
+        values=values,
+        variance=noise,
+        shared=scipy.sparse.hstack(effects, format="csr"),
+        shared_variance=np.concatenate(variance),
     )
 
 
-def _of_one(
-    seen: Seen, quantity: str, values: FloatArray, spread: Spread, kinds: tuple[str, ...]
+def _judge_quantity(
+    summary: TowSummary, quantity: str, values: FloatArray, spread: Spread, kinds: tuple[str, ...]
 ) -> list[Shift]:
-    """Shifts of one observed quantity."""
-    there = np.isfinite(values)
-    tows = seen.tows.frame.filter(pl.Series(there))
+    """Return the shifts of one observed quantity."""
+    is_known = np.isfinite(values)
+    tows = summary.tows.frame.filter(pl.Series(is_known))
     if tows.is_empty():
         return []
-    groups = _groups(tows, kinds)
-    if quantity in _WITH_UNITS:
-        ratio = np.maximum(1.0 + values[there], 0.01)
-        groups += _grossly_off(tows, np.log(ratio))
-    may = [(quantity, group, group[2], np.ones(len(group[2]))) for group in groups]
+    groups = _list_groups(tows, kinds)
+    if quantity in _HAS_UNITS:
+        ratio = np.maximum(1.0 + values[is_known], 0.01)
+        groups += _list_gross_tows(tows, np.log(ratio))
+    candidates = [(quantity, group, group[2], np.ones(len(group[2]))) for group in groups]
     gusts = np.zeros(tows.height)
     if quantity in ("wind", "vane"):
-        gusts = (GUST_SD * seen.true_wind[there]) ** 2
-    return _shifts(seen, there, _observed(tows, values[there], spread, gusts), may)
+        gusts = (GUST_SD * summary.true_wind[is_known]) ** 2
+    observations = _observe(tows, values[is_known], spread, gusts)
+    return _find_shifts(summary, is_known, observations, candidates)
 
 
-def _of_force(seen: Seen) -> list[Shift]:
-    """Shifts of the force's gain, and of its zero, which changes the bend in its own way."""
-    known = np.isfinite(seen.level) & np.isfinite(seen.bend) & (seen.force_n > 0)
-    alone = pl.when(pl.Series(seen.has_gps)).then(0).otherwise("season").alias("log_alone")
-    tows = seen.tows.frame.with_columns(alone).filter(pl.Series(known))
+def _judge_force(summary: TowSummary) -> list[Shift]:
+    """Return shifts of the force's gain, and of its zero, which changes the bend in its own way."""
+    is_known = np.isfinite(summary.level) & np.isfinite(summary.bend) & (summary.force_n > 0)
+    alone = pl.when(pl.Series(summary.has_gps)).then(0).otherwise("season").alias("log_alone")
+    tows = summary.tows.frame.with_columns(alone).filter(pl.Series(is_known))
+    ln_level = summary.level[is_known]
     if tows.is_empty():
         return []
-    level = _observed(tows, seen.level[known], LEVEL)
-    bend = _observed(tows, seen.bend[known], BEND, seen.bend_sd[known] ** 2)
+    level = _observe(tows, ln_level, LEVEL)
+    bend = _observe(tows, summary.bend[is_known], BEND, summary.bend_sd[is_known] ** 2)
     # Of the force that the size lets expect: a force in kgf is a tenth of it.
-    per_newton = np.exp(seen.level[known]) / seen.force_n[known]
-    may: list[Candidate] = []
-    for group in (*_groups(tows, _GROUPS), *_grossly_off(tows, seen.level[known])):
-        mine = group[2]
-        may.append(("force", group, mine, np.ones(len(mine))))
+    per_newton = np.exp(ln_level) / summary.force_n[is_known]
+    candidates: list[Candidate] = []
+    for group in (*_list_groups(tows, _GROUPS), *_list_gross_tows(tows, ln_level)):
+        own = group[2]
+        candidates.append(("force", group, own, np.ones(len(own))))
         if group[0] == "archive":  # a shape of hulls looks so; load cells are not off for ever
             continue
-        zero = per_newton[mine]
-        both = np.concatenate([mine, tows.height + mine])
-        may.append(("zero", group, both, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
-    return _shifts(seen, known, Observations.joined([level, bend]), may)
+        zero = per_newton[own]
+        both = np.concatenate([own, tows.height + own])
+        effect = np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])
+        candidates.append(("zero", group, both, effect))
+    observations = Observations.concatenate([level, bend])
+    return _find_shifts(summary, is_known, observations, candidates)
 
 
-def _shifts(
-    seen: Seen, there: BoolArray, observed: Observations, may: list[Candidate]
+def _find_shifts(
+    summary: TowSummary,
+    is_known: BoolArray,
+    observations: Observations,
+    listed: list[Candidate],
 ) -> list[Shift]:
-    """The candidates that have shifted among the tows that are there, and what may have done it."""
-    quantities = [quantity for quantity, *_ in may]
-    ends = np.cumsum([0, *(len(places) for *_, places, _ in may)])
-    places, sizes = (np.concatenate([one[k] for one in may]) for k in (2, 3))
+    """Return the candidates that have shifted, and what may have done it.
+
+    Args:
+        is_known: (tows,) tows that are observed.
+        observations: of these tows.
+        listed: what may have shifted among them.
+    """
+    quantities = [quantity for quantity, *_ in listed]
+    places = [places for _, _, places, _ in listed]
+    effects = [effect for _, _, _, effect in listed]
+    ends = np.cumsum([0, *(len(one) for one in places)])
+    columns = (np.concatenate(effects), np.concatenate(places), ends)
+    shape = (len(observations.values), len(listed))
     candidates = Candidates(
-        scipy.sparse.csc_array((sizes, places, ends), shape=(len(observed.values), len(may))),
-        np.array([kind == "tow" for _, (kind, *_), *_ in may]),
-        np.array([LEAST[quantity] for quantity in quantities]),
-        np.array([GROSS if quantity in _WITH_UNITS else np.inf for quantity in quantities]),
+        directions=scipy.sparse.csc_array(columns, shape=shape),
+        is_single=np.array([group[0] == "tow" for _, group, _, _ in listed]),
+        min_size=np.array([MIN_SIZE[quantity] for quantity in quantities]),
+        gross_size=np.array([GROSS if q in _HAS_UNITS else np.inf for q in quantities]),
     )
-    look = min(LOOK.get(quantity, np.inf) for quantity in quantities)
-    tow_ids = seen.tows.frame["tow_id"].filter(pl.Series(there))
-    air_share, stands_still = seen.air_share[there], seen.wind_stands_still[there]
+    flag_at = min(FLAG_AT_SD.get(quantity, np.inf) for quantity in quantities)
+    tow_ids = summary.tows.frame["tow_id"].filter(pl.Series(is_known))
+    air_share = summary.air_share[is_known]
+    stands_still = summary.wind_stands_still[is_known]
     shifts = []
-    for found in find_shifts(observed, candidates, LIMIT, look):
-        quantity, (kind, key, mine), *_ = may[found.place]
-        size, ln_size = found.size, found.size
+    for found in find_mean_shifts(observations, candidates, REJECT_AT_SD, flag_at):
+        quantity, (kind, key, own), _, _ = listed[found.place]
+        size = found.size
         if quantity == "force":
-            size = ln_size = _of_whole_force(size, air_share[mine])
-        if quantity == "wind":
-            ln_size = float(np.log(max(1.0 + size, 0.01)))
-        causes = _likely_causes(quantity, ln_size, found.sd)
-        if quantity == "wind" and stands_still[mine].any():
+            size = _convert_to_whole_force(size, air_share[own])
+        ln_size = float(np.log(max(1.0 + size, 0.01))) if quantity == "wind" else size
+        causes = _list_likely_causes(quantity, ln_size, found.sd)
+        if quantity == "wind" and stands_still[own].any():
             causes = ()  # an anemometer that died on the way is in no other unit
-        ids = tuple(tow_ids.gather(np.sort(mine)))
+        ids = tuple(tow_ids.gather(np.sort(own)))
         shifts.append(Shift(kind, key, quantity, size, found.sd, ids, causes, found.clear))
     return shifts
 
 
-def _of_whole_force(ln_size: float, air_share: FloatArray) -> float:
-    """Shift of ln force that gives a shift of its water part: no unit changes what the air took."""
-    water = np.maximum(1.0 - air_share, LEAST_WATER)
+def _convert_to_whole_force(ln_size: float, air_share: FloatArray) -> float:
+    """Return the shift of ln force that gives a shift of its water part.
+
+    No unit changes what the air took.
+    """
+    water = np.maximum(1.0 - air_share, MIN_WATER_SHARE)
     return float(-np.log(np.median(water * np.exp(-ln_size) + air_share)))
 
 
-def _likely_causes(quantity: str, ln_size: float, sd: float) -> tuple[Cause, ...]:
-    """The exchanges that explain a shift, likeliest first; several where they are too alike.
+def _list_likely_causes(quantity: str, ln_size: float, sd: float) -> tuple[Cause, ...]:
+    """Return the wrong units that explain a shift, likeliest first.
+
+    Several are returned where they are too alike.
 
     Args:
         quantity: `force` or `wind`; nothing is known of others.
         ln_size: logarithm of the number in the file / the number expected.
         sd: its standard deviation.
     """
-    known = _EXCHANGES.get(quantity, {})
+    known = _UNIT_RATIOS.get(quantity, {})
     far = {cause: abs(abs(ln_size) - np.log(ratio)) for cause, ratio in known.items()}
-    near = sorted((d, cause) for cause, d in far.items() if d <= EXCHANGE_TOLERANCE + 2.0 * sd)
-    return tuple(cause for d, cause in near if d <= near[0][0] + EXCHANGE_TOLERANCE)
+    near = sorted((d, cause) for cause, d in far.items() if d <= UNIT_TOLERANCE + 2.0 * sd)
+    return tuple(cause for d, cause in near if d <= near[0][0] + UNIT_TOLERANCE)

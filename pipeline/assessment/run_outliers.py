@@ -7,7 +7,7 @@ import polars as pl
 
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.assessment.seen import RUN_SCATTER, USUAL_BEND
+from pipeline.assessment.tow_summary import RUN_SD, USUAL_BEND
 
 MAX_OFF_CURVE_RATIO: Final = 0.05
 """Distance from the curve through the other runs, relative to it, from which a run is to be towed
@@ -67,7 +67,7 @@ def find_runs_off_curve(run_points: pl.DataFrame) -> list[OffCurve]:
         worst = int(misfit.argmin())
         levelled = _level_ways(speed_m_s, cw_kg_m, is_out, keep)
         if levelled is not None and not ways_are_equal:
-            level_misfit, _ = _misfit(speed_m_s, levelled, keep[None])
+            level_misfit, _ = _measure_misfit(speed_m_s, levelled, keep[None])
             ways_are_equal = bool(level_misfit[0] < misfit[worst])
             if ways_are_equal:
                 cw_kg_m = levelled
@@ -91,7 +91,7 @@ def _judge_without_each(
     of the others, or without a curve through these.
     """
     others = keep & ~np.eye(len(speed_m_s), dtype=bool)
-    misfit, curves = _misfit(speed_m_s, cw_kg_m, others)
+    misfit, curves = _measure_misfit(speed_m_s, cw_kg_m, others)
     slowest = np.where(others, speed_m_s, np.inf).min(axis=1)
     fastest = np.where(others, speed_m_s, -np.inf).max(axis=1)
     is_near = (speed_m_s >= slowest * (1 - MAX_BEYOND_RATIO)) & (
@@ -103,7 +103,7 @@ def _judge_without_each(
     return np.where(is_judged, misfit, np.inf), ratio
 
 
-def _misfit(
+def _measure_misfit(
     speed_m_s: FloatArray, cw_kg_m: FloatArray, used: BoolArray
 ) -> tuple[FloatArray, curve.Curves]:
     """Return how badly runs fit on a curve, for several selections of them, and the curves.
@@ -121,7 +121,7 @@ def _misfit(
     r = curves.s_s2_m2 * mean_square_speed
     is_curve = curves.converged & (r < 1) & (mean_cw > 0)
     bend = 2 * r / np.where(is_curve, 1 - r, 1.0)
-    scatter = RUN_SCATTER * np.where(is_curve, mean_cw, 1.0)
+    scatter = RUN_SD * np.where(is_curve, mean_cw, 1.0)
     misfit = curves.rss_kg2_m2 / scatter**2 + ((bend - USUAL_BEND) / BEND_SD) ** 2
     return np.where(is_curve, misfit, np.inf), curves
 
@@ -130,7 +130,7 @@ def _level_ways(
     speed_m_s: FloatArray, cw_kg_m: FloatArray, is_out: BoolArray, keep: BoolArray
 ) -> FloatArray | None:
     """Return Cw with the runs back on the level of those out; None where a way has no runs."""
-    _, fitted = _misfit(speed_m_s, cw_kg_m, keep[None])
+    _, fitted = _measure_misfit(speed_m_s, cw_kg_m, keep[None])
     on_curve = cw_kg_m / curve.cw(fitted.a_kg_m[0], fitted.s_s2_m2[0], speed_m_s)
     out, back = keep & is_out, keep & ~is_out
     if not (out.any() and back.any() and np.isfinite(on_curve[keep]).all()):

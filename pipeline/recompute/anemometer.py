@@ -48,7 +48,7 @@ def correct_anemometers(c: Computed) -> Computed:
     is_asked = c.options.wind.estimates_anemometer
     if not is_asked.any():
         return c
-    scales = estimate_scales(_wind_ratios(c).filter(is_asked))
+    scales = estimate_scales(_measure_wind_ratios(c).filter(is_asked))
     tows = c.tows.frame.select("season").join(
         scales, on="season", how="left", maintain_order="left"
     )
@@ -59,7 +59,7 @@ def correct_anemometers(c: Computed) -> Computed:
     return replace(c, means=means, air=air)
 
 
-def _wind_ratios(c: Computed) -> pl.DataFrame:
+def _measure_wind_ratios(c: Computed) -> pl.DataFrame:
     """Return the apparent wind of each tow over boat speed, mean of out and back.
 
     Returns:

@@ -28,7 +28,7 @@ def add_best_estimates(
     curves: pl.DataFrame,
     factors: SeasonFactors | None,
     budget: pl.DataFrame,
-    facts: pl.DataFrame,
+    inputs: pl.DataFrame,
 ) -> pl.DataFrame:
     """Add `BEST`, Cw at the declared speed by all tows with its 95 % interval, and `OTHERS`.
 
@@ -40,7 +40,7 @@ def add_best_estimates(
         curves: rows of the table.
         factors: season factors; None where the method does not estimate them: columns are null.
         budget: rows of the budget at the declared speed.
-        facts: of each tow there (`budget.make_facts`).
+        inputs: of each tow there (`budget.make_budget_inputs`).
     """
     if factors is None:
         return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
@@ -50,7 +50,7 @@ def add_best_estimates(
         .agg(shared_variance=(pl.col("u_ratio") ** 2).sum())
     )
     estimates = _move_to_declared_speed(factors.tows.drop_nulls("factor"))
-    misfits = facts.select("tow_id", "misfit", "misfit_variance")
+    misfits = inputs.select("tow_id", "misfit", "misfit_variance")
     joined = curves
     for frame in (estimates, shared, misfits):
         joined = joined.join(frame, on="tow_id", how="left", maintain_order="left")

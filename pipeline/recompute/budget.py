@@ -6,6 +6,7 @@ own points and holds if its log factors are right.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -40,14 +41,51 @@ FORCE_SD: Final = (_LOAD_CELL_ERROR**2 + pl.col("load_cell_sd") ** 2).sqrt()
 is not corrected by the record, so its error is part of the uncertainty (GUM F.2.4.5)."""
 
 
-def assumed_beside(factors: SeasonFactors | None) -> Assumed:
-    """Return what remains assumed beside what the season factors show."""
+def get_assumed(c: Computed, factors: SeasonFactors | None) -> Assumed:
+    """Return what remains assumed beside what the archive shows."""
     if factors is None:
         return Assumed()
-    return Assumed().beside_repeats(factors.tow_sd, factors.tow_zero_n, factors.calibration_sd)
+    assumed = replace(Assumed(), wind_coefficient=estimate_wind_coefficient_sd(c))
+    return assumed.replace_by_repeats(factors.tow_sd, factors.tow_zero_n, factors.calibration_sd)
 
 
-def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
+def estimate_wind_coefficient_sd(c: Computed) -> float:
+    """Return the uncertainty of the drag coefficient in air, as runs out and back show it.
+
+    Where the coefficient is off by d, runs out and back of a tow differ by d (felt out - felt back)
+    / Cw. d follows by least squares over all tows, its variance by the sandwich over tows (Huber
+    1967), and both are drawn to the prior 0 ± `Assumed.wind_coefficient`. Nothing is corrected, so
+    that d itself is part of the uncertainty (GUM, F.2.4.5).
+    """
+    residual, is_used, on_curve = _compute_residuals(c)
+    tows = c.tows
+    is_usable = is_used & (tows.trusted & tows.measured("wind"))[:, None]
+    direction = tows.group_by_tow(tows.direction.astype(np.float64))
+    is_out, is_back = is_usable & (direction > 0), is_usable & (direction < 0)
+    felt_per_unit = tows.group_by_tow(c.refer_to_true_speed(c.means.air.ahead + c.means.air.behind))
+    felt_ratio = felt_per_unit / np.where(is_used, on_curve, 1.0)
+    has_both_ways = is_out.any(axis=1) & is_back.any(axis=1)
+    difference = np.where(has_both_ways, _contrast(residual, is_out, is_back), 0.0)
+    slope = np.where(has_both_ways, _contrast(felt_ratio, is_out, is_back), 0.0)
+
+    prior_variance = Assumed().wind_coefficient ** 2
+    information = (slope**2).sum()
+    if information == 0.0:
+        return Assumed().wind_coefficient
+    error = (slope * difference).sum() / information
+    variance = ((slope * (difference - slope * error)) ** 2).sum() / information**2
+    shrinkage = prior_variance / (prior_variance + variance)
+    return float(np.hypot(shrinkage * error, np.sqrt(shrinkage * variance)))
+
+
+def _contrast(values: FloatArray, is_out: BoolArray, is_back: BoolArray) -> FloatArray:
+    """Return the mean of (tows, points) values out less that of those back, (tows,)."""
+    out = np.where(is_out, values, 0.0).sum(axis=1) / np.maximum(is_out.sum(axis=1), 1)
+    back = np.where(is_back, values, 0.0).sum(axis=1) / np.maximum(is_back.sum(axis=1), 1)
+    return np.asarray(out - back)
+
+
+def estimate_scatter(c: Computed, pooled: bool) -> curve.Scatter:
     """Return the scatter of single run points: pooled over a season, or of each tow alone.
 
     Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0. A
@@ -55,25 +93,25 @@ def scatter_of(c: Computed, pooled: bool) -> curve.Scatter:
     """
     if not pooled:
         return curve.own_scatter(c.free)
-    residual, is_used, on_curve = _residuals(c)
-    return _pool(c, residual, is_used, on_curve, CURVE_PARAMETERS)
+    residual, is_used, on_curve = _compute_residuals(c)
+    return _pool_residuals(c, residual, is_used, on_curve, CURVE_PARAMETERS)
 
 
-def pure_error_of(c: Computed) -> curve.Scatter:
+def estimate_pure_error(c: Computed) -> curve.Scatter:
     """Return the scatter of single run points that is no shape of the hull, pooled over a season.
 
     A hull lies off its hyperbola in all of its tows. That is the misfit of the budget and no
     scatter: what a parabola in speed takes out of the residuals of a tow is left out here (pure
     error: Draper & Smith 1998, ch. 2).
     """
-    residual, is_used, on_curve = _residuals(c)
+    residual, is_used, on_curve = _compute_residuals(c)
     x = c.points.speed_m_s / c.tows.get_of_tows("declared_speed_m_s")[:, None] - 1.0
     design = np.where(is_used[..., None], np.stack([np.ones_like(x), x, x**2], axis=2), 0.0)
     parabola = (design @ (np.linalg.pinv(design) @ residual[..., None]))[..., 0]
-    return _pool(c, residual - parabola, is_used, on_curve, PARABOLA_PARAMETERS)
+    return _pool_residuals(c, residual - parabola, is_used, on_curve, PARABOLA_PARAMETERS)
 
 
-def _pool(
+def _pool_residuals(
     c: Computed, residual: FloatArray, is_used: BoolArray, on_curve: FloatArray, parameters: int
 ) -> curve.Scatter:
     """Return the scatter of residuals pooled over seasons, as a variance of Cw of each tow."""
@@ -85,7 +123,7 @@ def _pool(
     return curve.Scatter(variance, np.where(is_known, dof, 0.0))
 
 
-def _residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
+def _compute_residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Return (point - curve) / curve, which points count, and the curve; (tows, points) each."""
     speed = np.where(c.points.used, c.points.speed_m_s, 0.0)
     on_curve = curve.cw(c.free.a_kg_m[:, None], c.free.s_s2_m2[:, None], speed)
@@ -94,13 +132,13 @@ def _residuals(c: Computed) -> tuple[FloatArray, BoolArray, FloatArray]:
     return np.where(is_used, ratio, 0.0), is_used, on_curve
 
 
-def files_log_sd(c: Computed) -> FloatArray:
+def estimate_files_log_sd(c: Computed) -> FloatArray:
     """Return the sd of a combined tow's mean ln log factor by how its files differ, (tows,).
 
     Each file has a log of its own. What two of them differ by says how far their mean may be off:
     half as far. Pooled over the season's combined tows; 0 for others, and where each is calibrated.
     """
-    residual, is_used, _ = _residuals(c)
+    residual, is_used, _ = _compute_residuals(c)
     is_second = c.tows.group_by_tow(c.tows.in_second_file.astype(np.float64)) > 0
     in_first, in_second = is_used & ~is_second, is_used & is_second
     is_combined = in_first.any(axis=1) & in_second.any(axis=1) & ~c.speed.is_calibrated
@@ -114,7 +152,7 @@ def files_log_sd(c: Computed) -> FloatArray:
     return np.where(is_combined, 0.5 * np.sqrt(mean_square[c.season_group]), 0.0)
 
 
-def make_facts(
+def make_budget_inputs(
     c: Computed, factors: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
     """Return what the budget of every tow needs, at some speeds.
@@ -132,16 +170,16 @@ def make_facts(
         `cw_kg_m`, NaN from B on; `misfit`, hull over curve less 1 by all tows of the boat, and
         `misfit_variance`, 0 where no season factors are estimated.
     """
-    scatter = scatter_of(c, pooled=False) if factors is None else pure_error_of(c)
-    tows = _facts_at_any_speed(c, factors, scatter)
-    misfit, misfit_variance = _boat_misfit(c, np.array(speed_ratios))
+    scatter = estimate_scatter(c, pooled=False) if factors is None else estimate_pure_error(c)
+    tows = _make_inputs_at_any_speed(c, factors, scatter)
+    misfit, misfit_variance = _estimate_boat_misfit(c, np.array(speed_ratios))
     if factors is None:
         misfit, misfit_variance = np.zeros_like(misfit), np.zeros_like(misfit_variance)
     at_speeds = [
         tows.with_columns(
             speed_ratio=pl.lit(speed_ratio),
             cw_kg_m=pl.Series(c.cw_at(speed_ratio)),
-            random_ratio=pl.Series(_random_ratio(c, scatter, speed_ratio)),
+            random_ratio=pl.Series(_compute_random_ratio(c, scatter, speed_ratio)),
             misfit=pl.Series(misfit[:, place]),
             misfit_variance=pl.Series(misfit_variance[:, place]),
         )
@@ -161,9 +199,9 @@ def make_facts(
     )
 
 
-def _boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _estimate_boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return misfit of each tow's hull and its variance, (tows, speeds) each."""
-    residual, is_used, _ = _residuals(c)
+    residual, is_used, _ = _compute_residuals(c)
     tows = c.tows
     by_tow = fit_parabolas(
         residual,
@@ -178,7 +216,7 @@ def _boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatArray, Flo
     return shrink_to_lines(by_tow, line.to_numpy().astype(np.int64))
 
 
-def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
+def _compute_random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
     """Return the relative random uncertainty of Cw at a speed / declared speed, (tows,)."""
     speed = speed_ratio * c.tows.get_of_tows("declared_speed_m_s")
     variance = curve.covariance(c.points, c.free, scatter, speed).c0_variance_kg2_m2
@@ -188,7 +226,7 @@ def _random_ratio(c: Computed, scatter: curve.Scatter, speed_ratio: float) -> Fl
     return np.where(is_known, sd / np.where(is_known, cw, 1.0), 1.0)
 
 
-def _facts_at_any_speed(
+def _make_inputs_at_any_speed(
     c: Computed, factors: SeasonFactors | None, scatter: curve.Scatter
 ) -> pl.DataFrame:
     """Return what the budget needs of each tow as far as it is the same at any speed."""
@@ -197,8 +235,10 @@ def _facts_at_any_speed(
     usual_bend = np.full(tows.size, USUAL_BEND)
     tow_log_sd = np.zeros(tows.size)
     if factors is not None:
-        usual_bend = _median_bends(c)
-        log_sd = np.hypot(factors.tow_log_sd_of(tows.get_of_tows("season")), files_log_sd(c))
+        usual_bend = _find_median_bends(c)
+        log_sd = np.hypot(
+            factors.get_tow_log_sd(tows.get_of_tows("season")), estimate_files_log_sd(c)
+        )
         tow_log_sd = np.where(c.speed.is_calibrated, 0.0, log_sd)
     bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual_bend)
 
@@ -231,7 +271,7 @@ def _facts_at_any_speed(
     )
 
 
-def _median_bends(c: Computed) -> FloatArray:
+def _find_median_bends(c: Computed) -> FloatArray:
     """Return the median of q at the declared speed over the tows with the same steps, (tows,)."""
     r = c.free.s_s2_m2 * c.tows.get_of_tows("declared_speed_m_s") ** 2
     is_known = c.free.converged & (r > 0.0) & (r < 1.0)

@@ -28,7 +28,7 @@ from pipeline.recompute.computed import (
 from pipeline.recompute.plan import Plan, leave_out_factor
 from pipeline.recompute.results import Recomputed, build_tables
 from pipeline.recompute.run_cache import RunCache
-from pipeline.recompute.season_factors import find_season_factors, instruments_of
+from pipeline.recompute.season_factors import find_season_factors, get_instruments
 from pipeline.run_reasons import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_CALIBRATED, NOT_SELECTED
 from pipeline.season_log import SeasonFactors
 from pipeline.steps.calibration import gps_factor_of_files
@@ -94,7 +94,7 @@ def evaluate(plan: Plan, instruments: pl.DataFrame | None = None) -> Computed:
         plan: the tows and their steps; what is searched over the archive is searched over these.
         instruments: rows of the table `tow_instruments`, for steps that ask for an estimate.
     """
-    known_instruments = instruments_of(plan, instruments)
+    known_instruments = get_instruments(plan, instruments)
     windows = plan.average_windows()
     means = average_runs(plan, windows, known_instruments)
     speed, is_determined = correct_speed(plan, windows["exists"], means, known_instruments)
@@ -122,7 +122,7 @@ def average_runs(plan: Plan, windows: dict[str, Any], instruments: pl.DataFrame)
 
     Args:
         windows: as `Plan.average_windows` gives them.
-        instruments: rows of `instruments_of`.
+        instruments: rows of `get_instruments`.
     """
     options = plan.run_options
     means = run_means(

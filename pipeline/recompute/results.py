@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.assessment.assess import add_status, assess
-from pipeline.assessment.run_choice import with_run_choice
+from pipeline.assessment.repeated_runs import choose_repeated_runs
 from pipeline.method.definition import Method
 from pipeline.method.options import Steps
 from pipeline.quantiles import t_quantile
@@ -25,9 +25,9 @@ from pipeline.recompute.best import add_best_estimates
 from pipeline.recompute.budget import (
     CURVE_SPEED_RATIOS,
     DECLARED,
-    assumed_beside,
-    make_facts,
-    scatter_of,
+    estimate_scatter,
+    get_assumed,
+    make_budget_inputs,
 )
 from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
@@ -84,15 +84,15 @@ def build_tables(
         return frame.select(name, pl.all())
 
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
-    run_points = with_run_choice(named(_run_points(c)))
+    run_points = choose_repeated_runs(named(_make_run_points(c)))
     speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
-    facts = make_facts(c, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
-    components = make_budget(facts, assumed_beside(estimated))
+    inputs = make_budget_inputs(c, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
+    components = make_budget(inputs, get_assumed(c, estimated))
     bounds = combine(components)
     at_v0 = components.filter(at_declared)
-    curves = named(_curves(c, bounds.filter(at_declared), pooled))
-    curves = add_best_estimates(curves, estimated, at_v0, facts.filter(at_declared))
-    diagnosis = _diagnosis(estimated, c)
+    curves = named(_make_curves(c, bounds.filter(at_declared), pooled))
+    curves = add_best_estimates(curves, estimated, at_v0, inputs.filter(at_declared))
+    diagnosis = _join_diagnoses(estimated, c)
     assessments = assess(curves, run_points, c.tows.frame, diagnosis)
     rejecting = [
         (season, check)
@@ -102,21 +102,21 @@ def build_tables(
     return Recomputed(
         run_points=run_points,
         curves=add_status(curves, assessments, rejecting),
-        log_factors=named(_log_factors(c, estimated)),
+        log_factors=named(_make_log_factors(c, estimated)),
         assessments=assessments,
         uncertainty_budget=at_v0.select(
             name,
             pl.exclude("speed_ratio", "dof"),
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
-        curve_points=named(_curve_points(facts, bounds)) if with_bands else pl.DataFrame(),
+        curve_points=named(_make_curve_points(inputs, bounds)) if with_bands else pl.DataFrame(),
         season_diagnosis=named(diagnosis),
-        **{table: named(rows) for table, rows in _tabulate_estimates(estimated).items()},
+        **{table: named(rows) for table, rows in _make_tables_of_all_tows(estimated).items()},
         factors=estimated,
     )
 
 
-def _run_points(c: Computed) -> pl.DataFrame:
+def _make_run_points(c: Computed) -> pl.DataFrame:
     means, windows, tow = c.means, c.windows, c.tows.tow
     has_window = windows["exists"]
     on_curve = curve.cw(c.curves.a_kg_m[tow], c.curves.s_s2_m2[tow], c.speed_m_s)
@@ -148,24 +148,24 @@ def _run_points(c: Computed) -> pl.DataFrame:
         "tow_id", "run", "direction", "target_speed_ratio"
     ).with_columns(
         pl.Series("lost_s", c.tows.lost_s),
-        *(_column(name, values, has_window) for name, values in numbers.items()),
-        _column("ends_ratio", windows["ends_ratio"], has_window & has_limits),
-        _column("gps_ratio", means.gps_m_s / log1, has_window),
-        _column("fitted_cw_kg_m", on_curve, has_window & c.curves.converged[tow]),
+        *(_make_column(name, values, has_window) for name, values in numbers.items()),
+        _make_column("ends_ratio", windows["ends_ratio"], has_window & has_limits),
+        _make_column("gps_ratio", means.gps_m_s / log1, has_window),
+        _make_column("fitted_cw_kg_m", on_curve, has_window & c.curves.converged[tow]),
         pl.Series("cut_reason", windows["cut_reason"], pl.String),
         pl.Series("used", c.used),
         pl.Series("reason", c.reasons, pl.String),
     )
 
 
-def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
+def _make_curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     tows = c.tows.frame
     declared = c.tows.get_of_tows("declared_speed_m_s")
     cw = c.cw_at_declared
     sound = np.isfinite(cw)
     mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
     lo, hi = (mine[name].fill_null(np.nan).to_numpy() for name in ("lo_ratio", "hi_ratio"))
-    b_interval = curve.b_interval(c.points, c.free, scatter_of(c, pooled))
+    b_interval = curve.b_interval(c.points, c.free, estimate_scatter(c, pooled))
     safe_cw = np.where(sound, cw, 1.0)
     residual = np.sqrt(c.curves.rss_kg2_m2 / np.maximum(c.curves.n_points - 2, 1)) / safe_cw
     # A cap is the method's choice, and coefficients searched run by run leave no scatter.
@@ -183,18 +183,18 @@ def _curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     return tows.select(
         "tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s"
     ).with_columns(
-        *(_column(name, values, sound) for name, values in numbers.items()),
-        _column("b_m_s", c.curves.b_m_s, sound & c.curves.b_determined),
-        _column("calibration_factor", c.calibration_factor, c.options.speed.is_calibrated),
+        *(_make_column(name, values, sound) for name, values in numbers.items()),
+        _make_column("b_m_s", c.curves.b_m_s, sound & c.curves.b_determined),
+        _make_column("calibration_factor", c.calibration_factor, c.options.speed.is_calibrated),
         pl.Series("b_capped", c.curves.b_capped),
         pl.Series("runs_used", c.tows.count(c.used), pl.Int8),
     )
 
 
-def _curve_points(facts: pl.DataFrame, bounds: pl.DataFrame) -> pl.DataFrame:
+def _make_curve_points(inputs: pl.DataFrame, bounds: pl.DataFrame) -> pl.DataFrame:
     """Curves over the speeds at which they are valid, with the 95 % interval of Cw at each."""
     cw = pl.col("cw_kg_m")
-    return facts.join(bounds, on=["tow_id", "speed_ratio"], maintain_order="left").select(
+    return inputs.join(bounds, on=["tow_id", "speed_ratio"], maintain_order="left").select(
         "tow_id",
         "speed_m_s",
         "cw_kg_m",
@@ -203,7 +203,7 @@ def _curve_points(facts: pl.DataFrame, bounds: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
+def _make_log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
     """Return factor, interval and source of each season; of tows that have GPS, if any have.
 
     A tow's own factor is in `run_points.speed_factor`.
@@ -216,9 +216,9 @@ def _log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFrame:
     for year in c.tows.frame["season"].unique().sort():
         first = which[season == year].min()
         if c.plan.steps[first].calibration.rule == "none":
-            found = _find_factor(c.plan.steps[first], year, estimated)
+            found = _find_season_factor(c.plan.steps[first], year, estimated)
         else:
-            found = _mean_factor(ln_factor[(season == year) & (which == first)])
+            found = _average_factor(ln_factor[(season == year) & (which == first)])
         rows.append((year, *found))
     return pl.DataFrame(rows, schema=dtypes(LogFactors, without=["method"]), orient="row")
 
@@ -227,7 +227,7 @@ Factor = tuple[float, float | None, float | None, str]
 """A factor with its interval and source."""
 
 
-def _find_factor(steps: Steps, season: int, estimated: SeasonFactors | None) -> Factor:
+def _find_season_factor(steps: Steps, season: int, estimated: SeasonFactors | None) -> Factor:
     """Return the factor where tows are not calibrated on GPS: estimated, prescribed or none."""
     is_asked = estimated is not None and steps.speed.correction == "estimated"
     if estimated is not None and is_asked and (known := estimated.of_season(season)) is not None:
@@ -238,7 +238,7 @@ def _find_factor(steps: Steps, season: int, estimated: SeasonFactors | None) -> 
     return factor, None, None, "none" if factor == 1.0 else "prescribed"
 
 
-def _mean_factor(ln_factor: FloatArray) -> Factor:
+def _average_factor(ln_factor: FloatArray) -> Factor:
     """Return the mean of tows that are calibrated on GPS, with a t interval; NaN are not."""
     known = ln_factor[np.isfinite(ln_factor)]
     if not (n := len(known)):
@@ -251,7 +251,7 @@ def _mean_factor(ln_factor: FloatArray) -> Factor:
     return factor, lo, hi, "gps"
 
 
-def _tabulate_estimates(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
+def _make_tables_of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
     """Return the tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
     schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
     if estimated is None:
@@ -264,14 +264,14 @@ def _tabulate_estimates(estimated: SeasonFactors | None) -> dict[str, pl.DataFra
     }
 
 
-def _diagnosis(estimated: SeasonFactors | None, c: Computed) -> pl.DataFrame:
+def _join_diagnoses(estimated: SeasonFactors | None, c: Computed) -> pl.DataFrame:
     """Return what is wrong with the instruments of each season; no rows without an estimate."""
     joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
     both = pl.concat([joint, diagnose_anemometers(c)])
     return both.sort("season", "part", "instrument")
 
 
-def _column(name: str, values: ArrayLike, known: BoolArray | bool) -> pl.Series:
+def _make_column(name: str, values: ArrayLike, known: BoolArray | bool) -> pl.Series:
     """Return a column of numbers, null where nothing is known or the number is infinite."""
     numbers = np.asarray(values, dtype=np.float64)
     sound = known & np.isfinite(numbers)

@@ -15,10 +15,15 @@ import polars as pl
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.channels import BACK, OUT
-from pipeline.recompute.budget import FORCE_SD, files_log_sd, pure_error_of
+from pipeline.recompute.budget import (
+    FORCE_SD,
+    estimate_files_log_sd,
+    estimate_pure_error,
+    estimate_scatter,
+)
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
-from pipeline.season_log import SeasonFactors, estimate_season_factors, first_estimate
+from pipeline.season_log import SeasonFactors, estimate_roughly, estimate_season_factors
 from pipeline.season_log.archive import LOG, UNOBSERVED_SD, sort_tows
 from pipeline.steps.calibration import gps_factor
 from pipeline.tables.frames import dtypes
@@ -51,7 +56,7 @@ def find_season_factors(c: Computed) -> SeasonFactors:
     Args:
         c: all tows under `leave_out_factor`.
     """
-    first = first_estimate(make_observations(c, {}))
+    first = estimate_roughly(make_observations(c, {}))
     tow_id = first.fit.model.archive.frame["tow_id"]
     ln_factor = {
         name: value
@@ -61,7 +66,7 @@ def find_season_factors(c: Computed) -> SeasonFactors:
     return estimate_season_factors(make_observations(c, ln_factor), first)
 
 
-def instruments_of(plan: Plan, rows: pl.DataFrame | None) -> pl.DataFrame:
+def get_instruments(plan: Plan, rows: pl.DataFrame | None) -> pl.DataFrame:
     """Return what was estimated of each tow, as far as its steps ask for it.
 
     Args:
@@ -100,25 +105,29 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     reference_ln = np.array([ln_factor.get(name, 0.0) for name in tows.frame["tow_id"]])
     log_speed = true_speed * np.exp(-reference_ln)
 
-    points = _water_points(c)
+    points = _make_water_points(c)
     curves = curve.fit(points)
-    errors = curve.covariance(points, curves, pure_error_of(c), log_speed)
+    errors = curve.covariance(points, curves, estimate_pure_error(c), log_speed)
+    with_misfit = curve.covariance(points, curves, estimate_scatter(c, pooled=True), log_speed)
     cw_as_read = curves.cw_at(log_speed)
     is_sound = curves.converged & np.isfinite(cw_as_read) & (cw_as_read > 0)
     cw = np.where(is_sound, cw_as_read, 1.0)
     r = np.where(is_sound, curves.s_s2_m2 * log_speed**2, 0.0)
     q = r / (1.0 - r)
 
-    # Random errors: scatter of the points; in combined tows, logs that differ; unmeasured wind.
+    # Random errors: scatter of the points; in combined tows, logs that differ; unmeasured wind. The
+    # misfit of the hull is no error of its level, but one of its bend: at the speeds that another
+    # log reads, the same hull has another.
     has_errors = is_sound & np.isfinite(errors.c0_variance_kg2_m2)
-    log_sd = files_log_sd(c)
+    log_sd = estimate_files_log_sd(c)
     ln_cw_by_log = 2.0 + 2.0 * q
     q_by_log = 2.0 * q * (1.0 + q)
     still_air = tows.mean(c.still_air_kg_m, c.used)
     wind_sd = np.where(tows.measured("wind"), 0.0, still_air * c.air.unrecorded_sd) / cw
     point_variance = np.where(has_errors, errors.c0_variance_kg2_m2 / cw**2, 1.0)
     ln_cw_sd = np.sqrt(point_variance + (ln_cw_by_log * log_sd) ** 2 + wind_sd**2)
-    q_sd = np.hypot(np.where(has_errors, np.sqrt(errors.q_variance), 1.0), q_by_log * log_sd)
+    q_variance = np.maximum(errors.q_variance, with_misfit.q_variance)
+    q_sd = np.hypot(np.where(has_errors, np.sqrt(q_variance), 1.0), q_by_log * log_sd)
     covariance = np.where(has_errors, errors.c0_q_covariance_kg_m / cw, 0.0)
     covariance = covariance + ln_cw_by_log * q_by_log * log_sd**2
 
@@ -126,7 +135,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     is_trusted = tows.trusted
     is_calibrated = c.speed.is_calibrated & is_trusted
     is_anchored = c.options.speed.is_calibrated
-    gps_ln_ratio, gps_sd, has_gps = _gps_ratio(c)
+    gps_ln_ratio, gps_sd, has_gps = _estimate_gps_ratio(c)
     is_plain_gps = has_gps & ~is_anchored & is_trusted
     y = np.where(c.speed.is_calibrated, c.calibration_factor, 1.0)
     numbers = {
@@ -159,13 +168,13 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     return _add_calibrations(_add_kappa(rows.drop("state")))
 
 
-def _water_points(c: Computed) -> curve.Points:
+def _make_water_points(c: Computed) -> curve.Points:
     """Return run points of the water alone: still air does not scale with the log's error."""
     water = c.tows.group_by_tow(c.cw_kg_m - c.still_air_kg_m)
     return curve.Points(c.points.speed_m_s, water, c.points.used & (water > 0))
 
 
-def _gps_ratio(c: Computed) -> tuple[FloatArray, FloatArray, BoolArray]:
+def _estimate_gps_ratio(c: Computed) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Return ln(GPS / log) of each tow with runs both ways, its random part, and where known.
 
     The random part is the scatter of run ratios about their direction's mean, pooled over

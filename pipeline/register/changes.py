@@ -13,7 +13,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
-from pipeline.assessment.seen import POWER_W
+from pipeline.assessment.tow_summary import ROWER_POWER_W
 from pipeline.choice import SAME_SHARE
 from pipeline.curve import VALID_RATIO, cw
 from pipeline.races.power import find_line_curves, speed_at_power
@@ -184,7 +184,9 @@ def _fill_curve(a: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
 def _rank(register: pl.DataFrame) -> pl.DataFrame:
     """Lines with a curve, and their rank by speed at equal power within the class."""
     lines = register.drop_nulls("cw_kg_m").select(*LINE, *COMPARED)
-    power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64) * lines["rowers"]
+    power = (
+        lines["crew_class"].replace_strict(ROWER_POWER_W, return_dtype=pl.Float64) * lines["rowers"]
+    )
     speed = pl.Series("speed", speed_at_power(*find_line_curves(lines), power.to_numpy()))
     rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
     return lines.with_columns(speed).with_columns(rank=rank).drop("speed")

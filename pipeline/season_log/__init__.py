@@ -15,13 +15,13 @@ A linear mixed model, in the order in which to read it:
 5. `fit`: effects by generalised least squares, variances by REML, patterns by EM;
 6. `faults`: which faults of instruments there are (score test, refit, evidence), with
    `boat_evidence`: what each boat alone says of them;
-7. `factors`, `tow_estimates`, `diagnosis`: what follows for logs, tows and seasons;
+7. `factors`, `tow_estimates`, `season_levels`, `diagnosis`: what follows for logs, tows, seasons;
 8. `estimate`: all of it as tables.
 
 Not here: how Cw of a tow is computed, prescribed corrections (never data here), and what is done
 with the factors.
 """
 
-from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors, first_estimate
+from pipeline.season_log.estimate import SeasonFactors, estimate_roughly, estimate_season_factors
 
-__all__ = ["SeasonFactors", "estimate_season_factors", "first_estimate"]
+__all__ = ["SeasonFactors", "estimate_roughly", "estimate_season_factors"]

@@ -92,7 +92,7 @@ def to_numpy(frame: pl.DataFrame, name: str) -> FloatArray:
     return frame[name].cast(pl.Float64).fill_null(np.nan).to_numpy()
 
 
-def mean_over_boat(
+def average_over_boat(
     values: FloatArray, boat: IntArray, is_counted: BoolArray | None = None
 ) -> FloatArray:
     """Return for each tow the mean of `values` over the tows of its boat, (n,).
@@ -133,7 +133,7 @@ def build_archive(tows: pl.DataFrame, priors: Priors) -> Archive:
     gps = to_numpy(frame, "gps_ln_ratio")
     has_gps = np.isfinite(gps) & (log != ANCHORED)
     gps_bias = 0.25 * (priors.gps_noise_m_s / speed) ** 2
-    mean_level = mean_over_boat(ln_cw, boat, is_observed)
+    mean_level = average_over_boat(ln_cw, boat, is_observed)
 
     y = np.stack(
         [ln_cw - mean_level, to_numpy(frame, "q"), np.where(has_gps, gps - gps_bias, 0.0)], axis=1
@@ -154,7 +154,7 @@ def build_archive(tows: pl.DataFrame, priors: Priors) -> Archive:
         y=y,
         y_covariance=y_covariance,
         mean_level=mean_level,
-        usual_bend=mean_over_boat(0.5 * to_numpy(frame, "kappa") - 1.0, boat),
+        usual_bend=average_over_boat(0.5 * to_numpy(frame, "kappa") - 1.0, boat),
         force_n=np.exp(ln_cw) * (speed * np.exp(-reference_ln)) ** 2,
         reference_ln=reference_ln,
         season=season,

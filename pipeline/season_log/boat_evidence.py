@@ -102,7 +102,7 @@ class BoatEvidence:
         return np.asarray(by_tows + scipy.special.logit(probability))
 
 
-def boats_needed(model: Model, faults: IntArray) -> IntArray:
+def count_boats_needed(model: Model, faults: IntArray) -> IntArray:
     """Return how many boats have to bear out each fault, by places among the effects, (c,).
 
     One more in a season whose log nothing but boats determines: one of them tells the log.

@@ -48,6 +48,8 @@ ALTERED_BOAT: Final = "altered_boat"
 """What a fault that one boat alone shows may be instead."""
 LEVEL_CAUSES: Final = ("mass_on_board", "water_depth", "waves", "force_not_linear")
 """What a level of a season may be that is no fault of the model."""
+CAUSES_BESIDE_FAULT: Final = {FORCE: LEVEL_CAUSES, ZERO: ("force_not_linear",)}
+"""What a fault of the load cell may be instead that is no fault of the model."""
 MAX_LEVEL: Final = np.log(1.02)
 """Level in ln Cw from which a person should look: two tows agree within 2 % (P2015)."""
 MAX_LEVEL_HALF_WIDTH: Final = 2.0 * MAX_LEVEL
@@ -141,12 +143,12 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
     unresolved = next((one for one in posterior.unresolved if one.place in places), None)
     if unresolved is not None:
         bounds.append(estimate + unresolved.size)
-        probability = max(probability or 0.0, _probability_beside_alteration(fit))
+        probability = max(probability or 0.0, _compute_probability_beside_alteration(fit))
     if probability is not None and probability >= DOUBT_PROBABILITY:
         likeliest = effects.faults[candidates[posterior.probability[candidates].argmax()]]
         first_tow = effects.listed[likeliest].first_tow
 
-    distance = None if name == LOG_SCALE else _distance_from_prior(fit, columns)
+    distance = None if name == LOG_SCALE else _measure_distance_from_prior(fit, columns)
     if not fit.has_converged:
         verdict = NOT_SETTLED
     elif name == LOG_SCALE:
@@ -158,8 +160,8 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
         verdict = _judge_fault(probability, distance, would_show)
     has_too_few_boats = unresolved is not None or not posterior.has_boats[candidates].all()
     confusions = _list_confusions(posterior, columns, candidates, has_too_few_boats)
-    if name == FORCE and verdict == FAULT:
-        confusions += [cause for cause in LEVEL_CAUSES if cause not in confusions]
+    if verdict == FAULT:
+        confusions += CAUSES_BESIDE_FAULT.get(name, ())
     return {
         "unit": "N" if name in (ZERO, ZERO_DRIFT) else "1",
         "estimate": estimate,
@@ -175,7 +177,7 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
     }
 
 
-def _probability_beside_alteration(fit: Fit) -> float:
+def _compute_probability_beside_alteration(fit: Fit) -> float:
     """Return the probability that an instrument failed and not that the one boat was altered.
 
     Both explain the boat's tows equally well, so their prior probabilities decide.
@@ -184,7 +186,7 @@ def _probability_beside_alteration(fit: Fit) -> float:
     return float(fault / (fault + fit.share[0]))
 
 
-def _distance_from_prior(fit: Fit, columns: IntArray) -> float | None:
+def _measure_distance_from_prior(fit: Fit, columns: IntArray) -> float | None:
     """Return how far the archive moves an effect that is always there, in standard deviations.
 
     Args:

@@ -48,7 +48,7 @@ class SeasonFactors:
     weights: pl.DataFrame
     diagnosis: pl.DataFrame
 
-    def tow_log_sd_of(self, season: FloatArray) -> FloatArray:
+    def get_tow_log_sd(self, season: FloatArray) -> FloatArray:
         """Return the standard deviation of ln factor from tow to tow in given seasons."""
         sd = np.zeros(len(season))
         for first, of_era in sorted(self.tow_log_sd.items()):
@@ -80,7 +80,7 @@ class SeasonFactors:
         return NOT_SETTLED in own["source"]
 
 
-def first_estimate(tows: pl.DataFrame) -> Posterior:
+def estimate_roughly(tows: pl.DataFrame) -> Posterior:
     """Return a rough estimate from the rows that `estimate_season_factors` takes.
 
     Raises:

@@ -26,7 +26,7 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.choice import first_largest
 from pipeline.season_log.archive import LEVEL
-from pipeline.season_log.boat_evidence import BoatEvidence, boats_needed
+from pipeline.season_log.boat_evidence import BoatEvidence, count_boats_needed
 from pipeline.season_log.factors import find_refused
 from pipeline.season_log.fit import Fit, Model, fit_model
 from pipeline.season_log.observation_model import BOAT_EFFECTS
@@ -165,13 +165,13 @@ def _search_faults(model: Model, start: Fit | None, with_patterns: bool) -> Fit:
     fit = fit_model(model, active, start, SEARCH_TOLERANCE, with_patterns)
     tried: set[tuple[Kind, ...]] = set()
     for _ in range(2 * MAX_FAULTS):
-        tried.add(_kinds_of_faults(model, fit.active))
-        places, ln_odds = odds_in_fit(fit)
-        ln_odds[~_agrees_with_boats(fit, places)] = -np.inf
+        tried.add(_list_kinds_of_faults(model, fit.active))
+        places, ln_odds = compute_odds_in_fit(fit)
+        ln_odds[~_is_borne_out_by_boats(fit, places)] = -np.inf
         if len(places) and ln_odds.min() < 0.0:
             active = np.delete(fit.active, places[ln_odds.argmin()])
         else:
-            fault = _most_needed_fault(fit, tried)
+            fault = _find_most_needed_fault(fit, tried)
             if fault is None:
                 return fit
             active = np.append(fit.active, fault)
@@ -181,19 +181,19 @@ def _search_faults(model: Model, start: Fit | None, with_patterns: bool) -> Fit:
     return replace(fit, has_converged=False)
 
 
-def _kinds_of_faults(model: Model, active: IntArray) -> tuple[Kind, ...]:
+def _list_kinds_of_faults(model: Model, active: IntArray) -> tuple[Kind, ...]:
     """Return the sorted kinds of the faults among some effects."""
     faults = active[model.effects.probability[active] < 1.0]
     return tuple(sorted(model.effects.listed[place].kind for place in faults))
 
 
-def _most_needed_fault(fit: Fit, tried: set[tuple[Kind, ...]]) -> int | None:
+def _find_most_needed_fault(fit: Fit, tried: set[tuple[Kind, ...]]) -> int | None:
     """Return the place of the fault with the largest odds above 1, of models not yet tried."""
     model = fit.model
     faults = model.effects.faults
     ln_odds = score_candidates(fit).ln_odds
     for place, fault in enumerate(faults):
-        kinds = _kinds_of_faults(model, np.append(fit.active, fault))
+        kinds = _list_kinds_of_faults(model, np.append(fit.active, fault))
         if fault in fit.active or kinds in tried:
             ln_odds[place] = -np.inf
     promising = np.flatnonzero(ln_odds > 0.0)
@@ -205,14 +205,14 @@ def _most_needed_fault(fit: Fit, tried: set[tuple[Kind, ...]]) -> int | None:
 def _has_boats(fit: Fit, faults: IntArray) -> BoolArray:
     """Return whether enough boats inform faults, by their places among the effects, (c,)."""
     n_boats = BoatEvidence.from_fit(fit, faults).n_informing
-    return np.asarray(n_boats >= boats_needed(fit.model, faults))
+    return np.asarray(n_boats >= count_boats_needed(fit.model, faults))
 
 
-def _agrees_with_boats(fit: Fit, places: IntArray) -> BoolArray:
+def _is_borne_out_by_boats(fit: Fit, places: IntArray) -> BoolArray:
     """Return whether enough boats bear out faults of a fit, by their places in the fit, (c,)."""
     faults = fit.active[places]
     n_agreeing = BoatEvidence.from_fit(fit, faults).count_agreeing(fit.value[places])
-    return np.asarray(n_agreeing >= boats_needed(fit.model, faults))
+    return np.asarray(n_agreeing >= count_boats_needed(fit.model, faults))
 
 
 def score_candidates(fit: Fit) -> ScoreTest:
@@ -241,7 +241,7 @@ def score_candidates(fit: Fit) -> ScoreTest:
     )
 
 
-def odds_in_fit(fit: Fit) -> tuple[IntArray, FloatArray]:
+def compute_odds_in_fit(fit: Fit) -> tuple[IntArray, FloatArray]:
     """Return the faults in a fit, as places among its effects, and their ln odds."""
     places = np.flatnonzero(fit.is_fault)
     probability = fit.model.effects.probability[fit.active[places]]
@@ -256,7 +256,7 @@ def _conclude(fit: Fit) -> Posterior:
     test = score_candidates(fit)
     # A candidate that the test still favours was tried, and its own fit rejected it.
     probability = np.where(test.ln_odds > 0.0, 0.0, scipy.special.expit(test.ln_odds))
-    places, ln_odds = odds_in_fit(fit)
+    places, ln_odds = compute_odds_in_fit(fit)
     row = np.searchsorted(fit.model.effects.faults, fit.active[places])
     probability[row] = scipy.special.expit(ln_odds)
     return Posterior(
@@ -282,7 +282,7 @@ def _find_unresolved(fit: Fit) -> tuple[UnresolvedFault, ...]:
     ln_odds = evidence.ln_odds(effects.variance[faults], effects.probability[faults])
     ln_odds[~evidence.informs] = -np.inf
     # One boat more than a fault needs settles which of them was altered.
-    ln_odds[:, evidence.n_informing > boats_needed(fit.model, faults)] = -np.inf
+    ln_odds[:, evidence.n_informing > count_boats_needed(fit.model, faults)] = -np.inf
     season = np.array([effects.listed[fault].season for fault in faults], dtype=np.float64)
     hull_names = fit.model.archive.hull_names
     unresolved = []

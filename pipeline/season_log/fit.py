@@ -70,14 +70,14 @@ class Model:
 
     @property
     def prior_ln_variance(self) -> FloatArray:
-        """Prior means of the ln variances, in the order of `variance_names`."""
+        """Prior means of the ln variances, in the order of `list_variance_names`."""
         p = self.priors
         log_sd = [p.tow_log_sd] * len(p.era_starts)
         of_numbers = [p.tow_sd, p.tow_bend_sd, p.tow_gps_sd]
         return 2.0 * np.log([*of_numbers, *log_sd, p.calibration_sd, p.tow_zero_n, p.drift_sd])
 
 
-def variance_names(priors: Priors) -> list[str]:
+def list_variance_names(priors: Priors) -> list[str]:
     """Return the names of the variance components, in the order of all arrays of variances."""
     eras = [f"log between tows from {first}" for first in priors.era_starts]
     return ["ln Cw", "bend", "GPS", *eras, "anchored log", "zero", "drift per year"]
@@ -97,7 +97,7 @@ class Fit:
         active: (k,) places of the effects in the model.
         value: (k,) posterior mode of the effects.
         covariance: (k, k) of their posterior.
-        ln_variance: (v,), in the order of `variance_names`.
+        ln_variance: (v,), in the order of `list_variance_names`.
         share: (2,) of gaps with an unreported alteration, and of early tows pulled askew.
         linear: the forward model at the estimate.
         boats: posterior of each group of boats.

@@ -29,7 +29,7 @@ import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
 from pipeline.curve import LEAST_MARGIN
-from pipeline.season_log.archive import Archive, mean_over_boat, to_numpy
+from pipeline.season_log.archive import Archive, average_over_boat, to_numpy
 from pipeline.season_log.priors import Priors
 
 LOG_SCALE: Final = "log_scale"
@@ -195,11 +195,13 @@ class Effects:
 
 def list_effects(archive: Archive, priors: Priors) -> Effects:
     """Return every effect that an archive may show."""
-    permanent = _permanent_effects(archive, priors)
-    return Effects((*permanent, *_season_faults(archive, priors), *_log_faults(archive, priors)))
+    permanent = _list_permanent_effects(archive, priors)
+    return Effects(
+        (*permanent, *_list_season_faults(archive, priors), *_list_log_faults(archive, priors))
+    )
 
 
-def _permanent_effects(archive: Archive, priors: Priors) -> Iterator[Effect]:
+def _list_permanent_effects(archive: Archive, priors: Priors) -> Iterator[Effect]:
     for place, log in enumerate(archive.logs.iter_rows(named=True)):
         own = (archive.log == place).astype(np.float64)
         key = (log["season"], log["part"])
@@ -211,7 +213,7 @@ def _permanent_effects(archive: Archive, priors: Priors) -> Iterator[Effect]:
         if log["has_gps"]:
             yield Effect(GPS_SCALE, *key, own, priors.gps_season_sd)
     is_unrecorded = ~archive.frame["temperature_known"].to_numpy()
-    for year in _seasons(archive):
+    for year in _list_seasons(archive):
         in_season = archive.season == year
         records = archive.frame.filter(season=year)["force_sd"].drop_nulls().to_numpy()
         force_sd = float(np.median(records)) if len(records) else priors.force_sd
@@ -226,33 +228,34 @@ def _permanent_effects(archive: Archive, priors: Priors) -> Iterator[Effect]:
         priors.length_elasticity,
     )
     yield Effect(AGEING, None, 0, years, ageing.sd, ageing.mean)
-    yield Effect(WEIGHT, None, 0, _ln_change(archive, "weight_kg"), weight.sd, weight.mean)
-    ln_length = _ln_change(archive, "waterline_length_m")
+    yield Effect(WEIGHT, None, 0, _compute_ln_change(archive, "weight_kg"), weight.sd, weight.mean)
+    ln_length = _compute_ln_change(archive, "waterline_length_m")
     yield Effect(LENGTH, None, 0, ln_length, length.sd, length.mean)
 
 
-def _season_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
+def _list_season_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
     """List the faults that any season may have: load cell, its zero, and a step of the fleet."""
     p = priors.fault_probability
-    in_seasons = [(year, archive.season == year) for year in _seasons(archive)]
+    in_seasons = [(year, archive.season == year) for year in _list_seasons(archive)]
     for year, own in in_seasons:
         yield Effect(FORCE, year, 0, own * 1.0, priors.force_fault_sd, probability=p)
     for year, own in in_seasons:
         yield Effect(ZERO, year, 0, own * 1.0, priors.zero_fault_n, probability=p)
     for year, own in in_seasons:
-        if (ramp := _ramp(archive.day, own)) is not None:
+        if (ramp := _make_ramp(archive.day, own)) is not None:
             yield Effect(ZERO_DRIFT, year, 0, ramp, priors.zero_fault_n, probability=p)
     for year, _ in in_seasons[1:]:
         later = (archive.season >= year).astype(np.float64)
-        yield Effect(FLEET, year, 0, later, priors.fleet_fault_sd, probability=p)
+        fleet = priors.fleet_probability
+        yield Effect(FLEET, year, 0, later, priors.fleet_fault_sd, probability=fleet)
 
 
-def _log_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
+def _list_log_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
     """List the faults that a log without dGPS may have: a trend, and an unreported replacement."""
     p = priors.fault_probability
     logs = [(year, part) for year, part in archive.logs.select("season", "part").iter_rows()]
     for place, key in enumerate(logs):
-        if (ramp := _ramp(archive.day, archive.log == place)) is not None:
+        if (ramp := _make_ramp(archive.day, archive.log == place)) is not None:
             yield Effect(TREND, *key, ramp, priors.trend_fault_sd, probability=p)
     tow_id = archive.frame["tow_id"].to_numpy()
     for place, key in enumerate(logs):
@@ -268,11 +271,11 @@ def _log_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
             yield Effect(CHANGE, *key, after * 1.0, sd, probability=each, first_tow=str(first_tow))
 
 
-def _seasons(archive: Archive) -> list[int]:
+def _list_seasons(archive: Archive) -> list[int]:
     return [int(year) for year in np.unique(archive.season)]
 
 
-def _ramp(day: FloatArray, own: BoolArray) -> FloatArray | None:
+def _make_ramp(day: FloatArray, own: BoolArray) -> FloatArray | None:
     """Return -1 to 1 in the course of the days of some tows, 0 for others; None within one day."""
     first = day[own].min()
     span = np.ptp(day[own])
@@ -281,10 +284,10 @@ def _ramp(day: FloatArray, own: BoolArray) -> FloatArray | None:
     return np.asarray(own * (2.0 * (day - first) / span - 1.0))
 
 
-def _ln_change(archive: Archive, column: str) -> FloatArray:
+def _compute_ln_change(archive: Archive, column: str) -> FloatArray:
     """Return ln size less its mean over the boat's tows; 0 where a tow of the boat has none."""
     size = to_numpy(archive.frame, column)
     is_known = size > 0
     ln_size = np.log(np.where(is_known, size, 1.0))
-    boat_is_known = mean_over_boat((~is_known).astype(np.float64), archive.boat) == 0.0
-    return np.where(boat_is_known, ln_size - mean_over_boat(ln_size, archive.boat), 0.0)
+    boat_is_known = average_over_boat((~is_known).astype(np.float64), archive.boat) == 0.0
+    return np.where(boat_is_known, ln_size - average_over_boat(ln_size, archive.boat), 0.0)

@@ -82,7 +82,7 @@ def group_boats(archive: Archive, priors: Priors) -> list[BoatGroup]:
     return groups
 
 
-def variance_parts(
+def compute_variance_parts(
     group: BoatGroup, archive: Archive, linear: Linearization, variance: FloatArray
 ) -> FloatArray:
     """Return what each variance component adds to the covariance of the boats' numbers.
@@ -90,7 +90,7 @@ def variance_parts(
     Args:
         variance: (v,) of ln Cw, bend and GPS between tows, of the log between tows per era and of
             anchored tows, of the load cell's zero between tows [N²], and of the drift per year
-            (`fit.variance_names`).
+            (`fit.list_variance_names`).
 
     Returns:
         (v, b, 3 T, 3 T). It is also the derivative of the covariance by ln variance.
@@ -114,7 +114,7 @@ def variance_parts(
     return parts.reshape(len(variance), boats, 3 * tows, 3 * tows)
 
 
-def unchanged_covariance(
+def compute_unchanged_covariance(
     group: BoatGroup, archive: Archive, linear: Linearization, parts: FloatArray, priors: Priors
 ) -> FloatArray:
     """Return the covariance V of the numbers of boats that nothing happened to, (b, 3 T, 3 T)."""
@@ -130,7 +130,7 @@ def unchanged_covariance(
     )
 
 
-def pattern_factor(group: BoatGroup, linear: Linearization, priors: Priors) -> FloatArray:
+def compute_pattern_factor(group: BoatGroup, linear: Linearization, priors: Priors) -> FloatArray:
     """Return A of each pattern, (b, p, 3 T, 2): its covariance is V + A A'."""
     boats, tows = group.tow.shape
     change = linear.by_boat[group.tow] * [priors.altered_sd, priors.altered_bend_sd]
@@ -225,7 +225,7 @@ def judge_patterns(
     Args:
         design: (n, 3, k) of all tows.
         residual: (n, 3) observed less predicted numbers of all tows.
-        variance: (v,) variance components, as in `variance_parts`.
+        variance: (v,) variance components, as in `compute_variance_parts`.
         share: (2,) of gaps with an unreported alteration, and of early tows pulled askew; None
             where nothing can have happened to a boat.
     """
@@ -235,10 +235,10 @@ def judge_patterns(
     own = own.reshape(boats, -1, 3 * tows)
 
     # Inverse and determinant of V + A A', by Woodbury's identity.
-    parts = variance_parts(group, archive, linear, variance)
-    unchanged = unchanged_covariance(group, archive, linear, parts, priors)
+    parts = compute_variance_parts(group, archive, linear, variance)
+    unchanged = compute_unchanged_covariance(group, archive, linear, parts, priors)
     inverse: FloatArray = np.linalg.inv(unchanged).astype(np.float64)
-    a = pattern_factor(group, linear, priors)
+    a = compute_pattern_factor(group, linear, priors)
     inverse_a = inverse[:, None] @ a
     capacitance = np.eye(2) + np.swapaxes(a, 2, 3) @ inverse_a
     gain: FloatArray = np.linalg.solve(capacitance, np.swapaxes(inverse_a, 2, 3)).astype(np.float64)

@@ -72,7 +72,8 @@ class Priors:
     water_sd: float = 0.012  # ln Cw; inferred: 0.3 % per degree, 4 C either way
 
     # Faults of a season: probability of each, and its size if there is one.
-    fault_probability: float = 0.01  # per season and kind; inferred
+    fault_probability: float = 0.01  # per season and kind of instrument fault; inferred
+    fleet_probability: float = 0.003  # per season, that all boats change at once; inferred
     force_fault_sd: float = 0.05  # ln force; inferred
     fleet_fault_sd: float = 0.03  # ln Cw of all boats from a season on; inferred
     zero_fault_n: float = 10.0  # N, zero of the load cell or half its drift in a season; inferred

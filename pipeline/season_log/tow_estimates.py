@@ -57,15 +57,15 @@ def estimate_tows(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
 
     is_corrected = fit.is_log | is_force | is_zero
     applied = np.where(is_corrected, fit.instrument_design, 0.0)
-    change = _change_without_boat(fit)[archive.hull]
+    change = _compute_change_without_boat(fit)[archive.hull]
     best, weights = _estimate_best(posterior)
     numbers = {
         "factor": np.where(has_log, np.exp(ln_factor), np.nan),
         "force_factor": np.exp(ln_force),
         "force_zero_n": zero_n,
         "bend": archive.usual_bend,
-        "askew_ratio": _askew_ratio(fit),
-        "ln_sd": np.where(has_log, _instrument_sd(posterior), model.priors.log_sd),
+        "askew_ratio": _compute_askew_ratio(fit),
+        "ln_sd": np.where(has_log, _compute_instrument_sd(posterior), model.priors.log_sd),
         "others_ln_ratio": np.where(has_log, -(applied * change).sum(axis=1), np.nan),
         "measured_ln_cw": archive.column("ln_cw") - predicted - ln_force_read,
         "best_ln_cw": best[:, 0],
@@ -76,7 +76,7 @@ def estimate_tows(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
     return archive.frame.with_columns(columns), weights
 
 
-def _instrument_sd(posterior: Posterior) -> FloatArray:
+def _compute_instrument_sd(posterior: Posterior) -> FloatArray:
     """Return the sd of the instruments' error in ln Cw per unit of 2 + 2 q, (n,).
 
     The log's error is that of the mean over its tows (`factors.make_factor_table`).
@@ -91,7 +91,7 @@ def _instrument_sd(posterior: Posterior) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(variance, 0.0)) / (2.0 + 2.0 * archive.usual_bend))
 
 
-def _change_without_boat(fit: Fit) -> FloatArray:
+def _compute_change_without_boat(fit: Fit) -> FloatArray:
     """Return by how much every effect changes when a boat is left out, (boats, k): one step."""
     hull = fit.model.archive.hull
     k = len(fit.value)
@@ -105,7 +105,7 @@ def _change_without_boat(fit: Fit) -> FloatArray:
     return np.asarray(-np.linalg.solve(remaining, score[:, :, None])[:, :, 0])
 
 
-def _askew_ratio(fit: Fit) -> FloatArray:
+def _compute_askew_ratio(fit: Fit) -> FloatArray:
     """Return the root mean square of what being pulled askew added to ln Cw of each tow, (n,)."""
     excess = fit.model.priors.askew_excess
     ratio = np.zeros(len(fit.model.archive.y))
@@ -179,13 +179,13 @@ def _predict_levels(b: GroupPosterior, posterior: Posterior) -> tuple[FloatArray
     sd = np.sqrt(np.maximum(variance, 1e-12))
 
     probability = np.repeat(b.probability[:, :, None], tows, axis=2)
-    lower, upper = _mixture_bounds(probability, mean, sd)
+    lower, upper = _find_mixture_bounds(probability, mean, sd)
     estimate = np.stack([(probability * mean).sum(axis=1), lower, upper], axis=2)
     of_ln_cw = gain.reshape(boats, -1, tows, tows, 3)[..., LEVEL]
     return estimate, np.einsum("bp,bpkl->bkl", b.probability, of_ln_cw)
 
 
-def _mixture_bounds(
+def _find_mixture_bounds(
     probability: FloatArray, mean: FloatArray, sd: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return both bounds of the 95 % interval of normal mixtures over axis 1, by bisection."""

@@ -11,7 +11,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
-from pipeline.uncertainty.propagation import log_key
+from pipeline.uncertainty.propagation import make_log_key
 
 if TYPE_CHECKING:
     from pipeline.season_log import SeasonFactors
@@ -20,7 +20,7 @@ MEMBERS: Final = 200
 SEED: Final = 2009
 
 
-def tow_ensemble(
+def draw_ensemble(
     method: str,
     curves: pl.DataFrame,
     ruled: pl.DataFrame,
@@ -37,7 +37,7 @@ def tow_ensemble(
         method: its name.
         curves, budget: its tables `curves` and `uncertainty_budget`.
         ruled: its curves with the estimate that the register uses.
-        factors: its season factors, as `ln_errors` takes them.
+        factors: its season factors, as `draw_ln_errors` takes them.
         members: how many.
     """
     ln_width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
@@ -46,7 +46,7 @@ def tow_ensemble(
     tows = measured.join(used, on="tow_id", maintain_order="left").with_columns(
         ratio=(pl.col("used_width") / pl.col("measured_width")).fill_null(1.0)
     )
-    errors = ln_errors(tows["tow_id"], budget, factors, members)
+    errors = draw_ln_errors(tows["tow_id"], budget, factors, members)
     cw = tows["cw"].to_numpy()[:, None] * np.exp(errors * tows["ratio"].to_numpy()[:, None])
     return pl.DataFrame(
         {
@@ -58,7 +58,7 @@ def tow_ensemble(
     )
 
 
-def ln_errors(
+def draw_ln_errors(
     tow_ids: pl.Series,
     budget: pl.DataFrame,
     factors: "SeasonFactors | None",
@@ -78,7 +78,7 @@ def ln_errors(
     error_of = {key: _draw(key, members) for key in budget["key"].unique().sort()}
     if factors is not None and factors.covariance.size:
         determined = factors.factors.drop_nulls("factor")
-        keys = determined.select(key=log_key(pl.col("season"), pl.col("part")))["key"]
+        keys = determined.select(key=make_log_key(pl.col("season"), pl.col("part")))["key"]
         sd = np.sqrt(np.diag(factors.covariance))
         root = np.linalg.cholesky(factors.covariance / np.outer(sd, sd))
         correlated = root @ np.stack([_draw(key, members) for key in keys])

@@ -44,7 +44,9 @@ class Assumed:
     between_tows_ratio: float = 0.0  # what repeat tows show of all that differs from tow to tow
     between_tows_n: float = 0.0  # and of what adds to the force: the zero of the load cell
 
-    def beside_repeats(self, tow_sd: float, tow_zero_n: float, calibration_sd: float) -> "Assumed":
+    def replace_by_repeats(
+        self, tow_sd: float, tow_zero_n: float, calibration_sd: float
+    ) -> "Assumed":
         """Return what remains assumed where repeat tows show how far tows scatter.
 
         Calibration, recorded temperature, straightness and the weighing of the crew differ from tow
@@ -71,7 +73,7 @@ class Assumed:
 
 
 class Component(NamedTuple):
-    """A component of the uncertainty of Cw, as expressions over the facts of a tow.
+    """A component of the uncertainty of Cw, as expressions over the inputs of a tow.
 
     Attributes:
         effect: change of ln Cw by one standard deviation of it, signed.
@@ -132,11 +134,11 @@ def list_components(assumed: Assumed) -> dict[str, Component]:
 COMPONENTS: Final = tuple(list_components(Assumed()))
 
 
-def make_budget(facts: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
+def make_budget(inputs: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
     """Return every component of the uncertainty of Cw, per tow and speed.
 
     Args:
-        facts: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
+        inputs: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part`; `kappa`, elasticity of Cw by a speed error; `random_ratio`, of the
             scatter of the run points, with `random_dof`; `force_n`, tow force; `misfit_ratio`, of
             the hull about its hyperbola; `calibrated` (on dGPS); `log_sd` of the season's ln
@@ -163,10 +165,10 @@ def make_budget(facts: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
         group = pl.when(component.shared == "single").then("tow_id").otherwise(season)
         key = pl.concat_str(pl.lit(name), group.fill_null(""), separator="/")
         if name == "season_log":
-            key = log_key(pl.col("season"), pl.col("part"))
+            key = make_log_key(pl.col("season"), pl.col("part"))
         effect = component.effect.cast(pl.Float64)
         parts.append(
-            facts.select(
+            inputs.select(
                 "tow_id",
                 "speed_ratio",
                 component=pl.lit(name),
@@ -180,7 +182,7 @@ def make_budget(facts: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
     return pl.concat(parts)
 
 
-def log_key(season: pl.Expr, part: pl.Expr) -> pl.Expr:
+def make_log_key(season: pl.Expr, part: pl.Expr) -> pl.Expr:
     """Return the key of the error of one log factor."""
     named = (pl.lit("season_log"), season.cast(pl.String), part.cast(pl.String), pl.lit(LOG))
     return pl.concat_str(named, separator="/")

@@ -17,7 +17,7 @@ from dashboards.queries.results import Results
 from dashboards.reading import read_blocks
 from dashboards.site import list_pages, render_page
 from herijk.simulate import WorldSettings, world_settings
-from pipeline.assessment.seen import Seen
+from pipeline.assessment.tow_summary import summarize_tows
 from pipeline.blocks.tows import Tows
 from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
@@ -61,9 +61,9 @@ def with_two_files() -> dict[str, pl.DataFrame]:
         world_settings("two-files", seasons=(2010, 2014), tows_per_season=8, rate_hz=10, seed=3)
     )
     made = recompute(read_shipped_method("rebased"), world.tows, world.blocks)
-    seen = vars(Seen(Tows.from_frames(world.tows, world.blocks)))
-    arrays = {name: pl.Series(values) for name, values in seen.items() if name != "tows"}
-    return frames(made) | {"seen": pl.DataFrame(arrays).fill_nan(None)}
+    summary = vars(summarize_tows(Tows.from_frames(world.tows, world.blocks)))
+    arrays = {name: pl.Series(values) for name, values in summary.items() if name != "tows"}
+    return frames(made) | {"tow_summary": pl.DataFrame(arrays).fill_nan(None)}
 
 
 def of_a_fleet() -> dict[str, pl.DataFrame]:

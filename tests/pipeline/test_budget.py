@@ -6,8 +6,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from herijk.simulate import WorldSettings, world_settings
-from pipeline.method.reading import read_shipped_method
+from herijk.simulate import Defects, WorldSettings, world_settings
+from pipeline.method.reading import parse_method, read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
 from tests.worlds import measure
@@ -73,3 +73,19 @@ def test_a_hull_off_its_hyperbola_does_not_count_as_scatter():
         parts[name] = dict(budget.rows())
     assert parts["humped"]["random"] == pytest.approx(parts["plain"]["random"], rel=0.05)
     assert parts["humped"]["misfit"] > 2.0 * parts["plain"]["misfit"]
+
+
+def test_out_and_back_show_how_far_the_drag_coefficient_may_be_off():
+    """The prescribed coefficient is right, or 0.15 too large."""
+    windy = Defects(wind_m_s=5.0)
+    world = measure(WorldSettings((2014, 2015), 12, 10, 4, defects=lambda season: windy))
+    by_wind = []
+    for drag in (0.5, 0.65):
+        text = (
+            'name = "draft"\ntitle = "Test"\nextends = "rebased"\n[steps]\n'
+            f"wind = {{ ahead = {drag}, behind = {drag} }}\n"
+        )
+        method = parse_method(text, "draft.toml")
+        made = recompute(method, world.tows, world.blocks, with_bands=False)
+        by_wind.append(made.uncertainty_budget.filter(component="wind")["u_ratio"].mean())
+    assert by_wind[1] > 5.0 * by_wind[0] > 0.0

@@ -20,7 +20,7 @@ SEASONS = (2014, 2015, 2016, 2017, 2018)
 @pytest.fixture(scope="module")
 def world() -> Measured:
     """History, so with boats that were altered and nobody said so."""
-    return measure(WorldSettings(SEASONS, 24, 20, 34))
+    return measure(WorldSettings(SEASONS, 24, 10, 34))
 
 
 @pytest.fixture(scope="module")

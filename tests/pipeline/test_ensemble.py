@@ -30,7 +30,7 @@ def lines(made):
 
 def errors(made, tows, members=ensemble.MEMBERS):
     held = made.uncertainty_budget.join(tows, on="tow_id", how="semi", maintain_order="left")
-    return ensemble.ln_errors(tows["tow_id"], held, made.factors, members)
+    return ensemble.draw_ln_errors(tows["tow_id"], held, made.factors, members)
 
 
 def test_members_spread_as_the_budget_says(made, lines):
@@ -64,7 +64,7 @@ def test_members_lie_around_the_number_of_the_register(made, lines):
         for level, half in ((cw, 0.04), (cw * 0.97, 0.02))
     )
     of_own, of_best = (
-        ensemble.tow_ensemble("rebased", measured, used, made.uncertainty_budget, made.factors)
+        ensemble.draw_ensemble("rebased", measured, used, made.uncertainty_budget, made.factors)
         .group_by("tow_id", maintain_order=True)
         .agg(middle=cw.log().mean(), sd=cw.log().std())
         .join(measured, on="tow_id", maintain_order="left")

@@ -8,7 +8,6 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.assessment.assess import PER_RUN, measure_runs
 from pipeline.assessment.checks import CODES
 from pipeline.assessment.first_assessment import (
     JUDGED_BY,
@@ -18,6 +17,7 @@ from pipeline.assessment.first_assessment import (
     get_runs_to_redo,
     get_verdict,
 )
+from pipeline.assessment.run_measures import PER_RUN, measure_runs
 from pipeline.assessment.run_outliers import find_runs_off_curve
 from pipeline.tables.first_assessment import RULES, FirstAssessment
 

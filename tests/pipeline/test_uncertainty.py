@@ -96,7 +96,7 @@ def test_interval_takes_few_degrees_of_freedom_into_account():
 
 def test_repeat_tows_show_what_differs_between_tows_and_shrink_nothing_else():
     """What repeats share cancels in their difference (ISO 5725-1; GUM, type B)."""
-    few, many = (Assumed().beside_repeats(sd, 0.0, 0.5 * sd) for sd in (0.0001, 0.02))
+    few, many = (Assumed().replace_by_repeats(sd, 0.0, 0.5 * sd) for sd in (0.0001, 0.02))
     held, other = (budget(tows(temperature_known=True), assumed) for assumed in (few, many))
     shared = pl.col("component").is_in(["force", "wind", "anemometer", "mass", "temperature"])
     assert (held.filter(shared)["u_ratio"] > 0.001).all()
@@ -106,7 +106,7 @@ def test_repeat_tows_show_what_differs_between_tows_and_shrink_nothing_else():
 
 
 def test_a_zero_that_wanders_between_tows_counts_most_for_light_boats():
-    assumed = Assumed().beside_repeats(0.003, 2.0, 0.0)
+    assumed = Assumed().replace_by_repeats(0.003, 2.0, 0.0)
     light, heavy = (budget(tows(force_n=force), assumed) for force in (125.0, 500.0))
     assert u_of(light, "between_tows") == pytest.approx(np.hypot(0.003, 2.0 / 125.0))
     assert u_of(heavy, "between_tows") == pytest.approx(np.hypot(0.003, 2.0 / 500.0))

@@ -16,7 +16,7 @@ import pytest
 from herijk.simulate import Defects, WorldSettings, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.assessment.plausibility import Shift, plausibility
-from pipeline.assessment.seen import Seen
+from pipeline.assessment.tow_summary import summarize_tows
 from pipeline.blocks.tows import Tows
 from pipeline.method.reading import read_shipped_method
 from tests.warehouse.edition_bench import EditionBench
@@ -130,7 +130,7 @@ def test_gusts_of_a_windy_season_are_no_fault_and_another_unit_is(seed):
     )
     world = measure(settings)
     assert wind_changed(world, []) == []
-    true_wind = Seen(Tows.from_frames(world.tows, world.blocks)).true_wind
+    true_wind = summarize_tows(Tows.from_frames(world.tows, world.blocks)).true_wind
     middle = int(true_wind.argsort()[len(true_wind) // 2])
     tow = world.tows["tow_id"].sort()[middle]
     in_knots = dict.fromkeys(("wind_x", "wind_y", "wind_v"), 1.9438445)

@@ -29,7 +29,7 @@ from pipeline.register.register import (
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import RaceChanges, RegisterChanges
 from pipeline.tables.schemas import TABLES, conform
-from pipeline.uncertainty.ensemble import tow_ensemble
+from pipeline.uncertainty.ensemble import draw_ensemble
 from warehouse.store import decisions as decided
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
@@ -120,7 +120,7 @@ def race_changes(
 def members_of(method: Method, made: Recomputed) -> pl.DataFrame:
     """Equally likely numbers of every tow: rows of the table `ensemble`."""
     ruled = apply_rule(made.curves, method.validity)
-    return tow_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
+    return draw_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
 
 
 def due_of_lines(

@@ -17,13 +17,13 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.assessment.assess import measure_runs
 from pipeline.assessment.first_assessment import (
     QuayTow,
     assess_first,
     get_runs_to_redo,
     get_verdict,
 )
+from pipeline.assessment.run_measures import measure_runs
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.channels import OUT, RUN_SECONDS, SECOND_FILE_OFFSET
 from pipeline.errors import MissingKnowledgeError

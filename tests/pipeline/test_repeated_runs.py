@@ -3,7 +3,7 @@
 import polars as pl
 import pytest
 
-from pipeline.assessment.run_choice import with_run_choice
+from pipeline.assessment.repeated_runs import choose_repeated_runs
 
 
 def point(run, target=1.0, direction=1, **differs):
@@ -34,12 +34,12 @@ def point(run, target=1.0, direction=1, **differs):
 )
 def test_the_most_reliable_run_of_each_kind_is_kept(worse, reason):
     points = pl.DataFrame([point(1, **worse), point(21), point(2, 1.1), point(4, direction=-1)])
-    found = dict(with_run_choice(points).select("run", "choice").rows())
+    found = dict(choose_repeated_runs(points).select("run", "choice").rows())
     assert found == {1: reason, 21: "most_reliable", 2: None, 4: None}
 
 
 def test_of_equal_runs_the_first_counts_and_no_number_changes():
     points = pl.DataFrame([point(21), point(1)])
-    found = with_run_choice(points)
+    found = choose_repeated_runs(points)
     assert found.drop("choice").equals(points)
     assert found["choice"].to_list() == ["more_scatter", "most_reliable"]

@@ -17,8 +17,8 @@ SCATTER: Final = "more_scatter"
 KIND: Final = ("tow_id", "target_speed_ratio", "direction")
 
 
-def with_run_choice(run_points: pl.DataFrame) -> pl.DataFrame:
-    """Run points with `choice`, where there are several at one target speed and direction.
+def choose_repeated_runs(run_points: pl.DataFrame) -> pl.DataFrame:
+    """Add `choice` to run points, where there are several at one target speed and direction.
 
     They are ranked by, in this order: a steady window; ends that agree within the method's limits;
     how little was left out; the standard error of the mean Cw (`cw_sd` over the root of the
