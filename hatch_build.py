@@ -13,7 +13,7 @@ CATALOGUES = "pipeline/locale/*/LC_MESSAGES/*.po"
 
 
 def compile_catalogues(root: Path) -> None:
-    """Writes a `.mo` beside every `.po` that is newer."""
+    """Write a `.mo` beside every `.po` that is newer."""
     for source in root.glob(CATALOGUES):
         target = source.with_suffix(".mo")
         if target.exists() and target.stat().st_mtime >= source.stat().st_mtime:
@@ -40,7 +40,7 @@ class CustomBuildHook(BuildHookInterface):
     """Compiles before a wheel or an editable install is made."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
-        """Called by Hatchling before it gathers files."""
+        """Compile what the wheel needs, before Hatchling gathers files."""
         compile_catalogues(Path(self.root))
         compile_templates(Path(self.root))
 

@@ -21,7 +21,7 @@ from warehouse.editions.verify import verify
 from warehouse.queries.change_report import change_report
 from warehouse.store.database import open_database
 from warehouse.store.store import Store
-from warehouse.store.unforeseen import UNFORESEEN, in_short, is_unforeseen
+from warehouse.store.unforeseen import UNFORESEEN, is_unforeseen, shorten_error
 
 ERROR: Final = "ERROR"
 WARN: Final = "WARN"
@@ -142,7 +142,7 @@ def evaluate_checks(store: Store, settings: Settings) -> pl.DataFrame:
         except BaseException as error:  # a panic of a library in Rust is no Exception
             if not is_unforeseen(error):
                 raise
-            found = Found([f"Herijk itself failed: {in_short(error)}"])
+            found = Found([f"Herijk itself failed: {shorten_error(error)}"])
         rows.append(
             {
                 "asset": asset,

@@ -6,22 +6,22 @@ import re
 
 
 def boat_path(fsn_no: str) -> str:
-    """The page of a boat: its number if that can be a file name, else with a hash of it."""
+    """Return the page of a boat: its number if that can be a file name, else with a hash of it."""
     return _path("boats", fsn_no)
 
 
 def type_path(boat_type: str) -> str:
-    """The page of a type of boat."""
+    """Return the page of a type of boat."""
     return _path("types", boat_type)
 
 
 def edition_page(edition: str) -> str:
-    """The page of a published edition."""
+    """Return the page of a published edition."""
     return _path("editions", edition)
 
 
 def race_path(race: str, day: dt.date) -> str:
-    """The page of a race."""
+    """Return the page of a race."""
     return _path("races", f"{race}-{day}")
 
 
@@ -33,5 +33,5 @@ def _path(folder: str, name: str) -> str:
 
 
 def trace_path(tow_id: str) -> str:
-    """The picture of the traces of a tow."""
+    """Return the picture of the traces of a tow."""
     return _path("traces", tow_id).removesuffix(".html") + ".svg"

@@ -34,6 +34,6 @@ class MethodGuide(NamedTuple):
 
 
 def method_guide(language: str) -> MethodGuide:
-    """The document on methods by section."""
+    """Return the document on methods by section."""
     text = guide_file("method", language).read_bytes().decode()
     return MethodGuide(*(f"## {section}" for section in text.split("\n## ")[1:]))

@@ -268,11 +268,11 @@ def fit_capped(points: Points, free: Curves, b_cap_m_s: ArrayLike) -> Curves:
     s_min = np.broadcast_to(s_of_b(b_cap_m_s), free.s_s2_m2.shape)
     is_too_flat = free.converged & (free.s_s2_m2 < s_min)
     capped = _fit_given_s(points, s_min)
-    curves = chosen(is_too_flat, capped, free)
+    curves = choose_curves(is_too_flat, capped, free)
     return replace(curves, b_capped=is_too_flat & capped.converged)
 
 
-def chosen(where: BoolArray, one: Curves, other: Curves) -> Curves:
+def choose_curves(where: BoolArray, one: Curves, other: Curves) -> Curves:
     """Return the curves of `one` where chosen, and those of `other` elsewhere."""
     return Curves(
         a_kg_m=np.where(where, one.a_kg_m, other.a_kg_m),
@@ -312,7 +312,7 @@ def _fit_given_s(points: Points, s: FloatArray) -> Curves:
         rss_kg2_m2=profile.rss_kg2_m2,
         converged=is_valid,
     )
-    return chosen(is_valid, given, flat)
+    return choose_curves(is_valid, given, flat)
 
 
 class _Profile(NamedTuple):

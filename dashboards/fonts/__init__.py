@@ -23,7 +23,7 @@ _FACE: Final = (
 
 @cache
 def style_sheet() -> str:
-    """A style sheet that brings the font along."""
+    """Return a style sheet that brings the font along."""
     return "".join(
         _FACE.format(family=FAMILY, weight=weight, data=_encoded(f"OpenSans-{name}.woff2"))
         for name, weight in WEIGHTS.items()

@@ -79,7 +79,7 @@ def _(rate_hz, samples, tow):
 @app.cell
 def _(found, points):
     curve = found.curves.row(0, named=True)
-    drawn = herijk.Curve.of(curve["a_kg_m"], curve["b_m_s"])
+    drawn = herijk.Curve.from_a_b(curve["a_kg_m"], curve["b_m_s"])
     speeds = [0.8 * curve["declared_speed_m_s"] + 0.01 * i for i in range(120)]
     shape = pl.DataFrame({"speed_m_s": speeds, "cw_kg_m": drawn.cw_kg_m(speeds)})
     axes = (

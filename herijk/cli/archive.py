@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 @argument("directory", type=PATH, help="Folder to make.")
 @form_options
 def init(directory: Path) -> None:
-    """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
+    """Make an empty archive with examples, spreadsheets to fill in, and a page that explains it."""
     from warehouse.archive.empty_archive import write_templates
 
     try:
@@ -81,7 +81,7 @@ def simulate(
 @data_option
 @form_options
 def check(archive: Path | None, store: "Store") -> None:
-    """What is wrong in an archive, by cause, and whether this machine is ready for a rebuild.
+    """Say what is wrong in an archive, by cause, and whether this machine can rebuild.
 
     Reads lists, headers and a sample of the data; then settings, methods, tables and disk space.
     """

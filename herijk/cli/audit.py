@@ -51,12 +51,11 @@ def audit(
     method: str | None,
     tow: str | None,
 ) -> None:
-    """Where a boat's number comes from, or whether boats of a type are equal.
+    """Show where a boat's number comes from, or whether boats of a type are equal.
 
     With --edition also the files, runs and seconds behind a line of a published edition.
     """
     from dashboards.queries import boats, types
-    from herijk.cli.options import as_json
     from warehouse.queries.types import choose_type, find_boat
     from warehouse.store.editions import edition_names
     from warehouse.store.methods import KnownMethods
@@ -64,7 +63,7 @@ def audit(
     if len(names) > 2:
         raise click.UsageError(tell("give a boat, or one or two types; quote a name with blanks"))
     is_published = edition in edition_names(store)
-    if is_published and (as_json() or not store.database.exists()):
+    if is_published and (wants_json() or not store.database.exists()):
         show_lineage(store, str(edition), names[0])  # an edition says this by itself
         return
     if method is not None:
@@ -138,7 +137,7 @@ def show_lineage(store: "Store", edition: str, name: str) -> None:
 @option("--method", help="Method. Default: that of the newest edition, or rebased.")
 @form_options
 def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> None:
-    """What a tow shows while the boat waits: provisional, and nothing is stored."""
+    """Assess a tow while the boat waits: provisional, and nothing is stored."""
     from dashboards.queries.quay import describe_tow
     from pipeline.method.definition import COMPLETE
     from pipeline.register.register import STUDIED_METHOD

@@ -20,7 +20,7 @@ out_option = option("--out", type=PATH, help="PDF to write, or a folder for it."
 
 @click.group(cls=Group)
 def export() -> None:
-    """Pages of the site, certificates or a proposal as files."""
+    """Write pages of the site, certificates or a proposal as files."""
 
 
 @export.command()
@@ -43,7 +43,7 @@ def certificate(
     as_of: dt.date | None,
     out: Path | None,
 ) -> None:
-    """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
+    """Write the certificate of a boat, a page per crew, or those of an edition in one file."""
     from assets.settings import read_settings
     from dashboards.queries.papers import read_certificates
     from dashboards.queries.results import Results
@@ -74,7 +74,7 @@ def certificate(
 @data_option
 @as_of_option
 def pages(out: Path, store: "Store", as_of: dt.date | None) -> None:
-    """All pages of the site in a folder of their own, for instance as of an earlier day."""
+    """Write all pages of the site into a folder, for instance as of an earlier day."""
     from dashboards.site import build_site
     from warehouse.store.unforeseen import documents
 
@@ -104,7 +104,7 @@ def proposal(
     valid_from: dt.date | None,
     out: Path | None,
 ) -> None:
-    """What a board sends its members before they vote: what changes, for whom, how uncertain."""
+    """Write what a board sends its members before a vote: what changes, for whom, how uncertain."""
     from dashboards.queries.papers import read_proposal
     from warehouse.queries.views import Views
     from warehouse.store.methods import KnownMethods

@@ -74,7 +74,7 @@ for _command in (methods, compare, publish, verify, export, serve):
 
 
 def main() -> None:
-    """Runs the command; an error that a user can act on becomes one sentence and status 1."""
+    """Run the command; an error that a user can act on becomes one sentence and status 1."""
     os.environ.setdefault(BLAS_THREADS, "1")
     os.environ.setdefault(ARROW_MEMORY, "system")
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C; it is what systemd sends
@@ -105,7 +105,7 @@ def _stopped() -> NoReturn:
 
 
 def _written_down(error: BaseException) -> str:
-    """A sentence about an error that nobody foresaw, and where to read the rest."""
+    """Return a sentence about an error that nobody foresaw, and where to read the rest."""
     import tempfile
     import traceback
 

@@ -28,7 +28,7 @@ METHOD_FIELDS: Final = ("method", "title", "description", "content_hash", "exten
 @form_options
 @click.pass_context
 def methods(context: click.Context, store: "Store") -> None:
-    """The methods: those that ship, and your own."""
+    """List the methods: those that ship, and your own."""
     if context.invoked_subcommand is not None:
         return
     from warehouse.store.methods import KnownMethods
@@ -51,7 +51,7 @@ def methods(context: click.Context, store: "Store") -> None:
 @data_option
 @form_options
 def show_method(name: str, store: "Store") -> None:
-    """What a method does other than the one it extends; all its options where it extends none."""
+    """Show what a method changes of the one it extends; all options where it extends none."""
     show("method_file", _describe(store, name) | {"checked": ""}, METHOD_FIELDS)
 
 
@@ -108,7 +108,7 @@ def new(name: str, base: str, store: "Store") -> None:
 @as_of_option
 @form_options
 def compare(old: str, new: str, store: "Store", fatigue: str, as_of: dt.date | None) -> None:
-    """Two editions or methods side by side: who gains, who loses, and why.
+    """Compare two editions or methods: who gains, who loses, and why.
 
     Published editions are compared as they are, with races. For a draft, a method or a method file
     all tows are recomputed under both methods; nothing is published or stored.

@@ -23,7 +23,7 @@ AS_JSON, WIDE = "herijk.as_json", "herijk.wide"
 
 
 def folder_option(name: str, *parameter: str, **settings: Any) -> Callable[[F], F]:
-    """The option of a folder, which may also be in the environment."""
+    """Return the option of a folder, which may also be in the environment."""
     envvar = f"HERIJK_{name.upper()}"
     return option(f"--{name}", *parameter, type=PATH, envvar=envvar, show_envvar=True, **settings)
 
@@ -35,7 +35,7 @@ def _store(_: click.Context, __: click.Parameter, folder: Path) -> "Store":
 
 
 def _keep_as_json(context: click.Context, _: click.Parameter, wanted: bool) -> None:
-    context.meta[AS_JSON] = wanted or as_json()
+    context.meta[AS_JSON] = wanted or wants_json()
 
 
 archive_option = folder_option("archive", required=True, help="The archive folder.")
@@ -72,7 +72,7 @@ class Day(click.ParamType[dt.date]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> dt.date:
-        """The day."""
+        """Return the day."""
         try:
             return dt.date.fromisoformat(value)
         except ValueError:
@@ -87,7 +87,7 @@ class Seasons(click.ParamType[range]):
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> range:
-        """The seasons, both ends included."""
+        """Return the seasons, both ends included."""
         match = re.fullmatch(r"(\d{4})(?::(\d{4}))?", value)
         if match is None or int(match[2] or match[1]) < int(match[1]):
             self.fail(tell("write a season, 2014, or a range, 2009:2018"), param, ctx)
@@ -102,7 +102,7 @@ as_of_option = option(
 )
 
 
-def as_json() -> bool:
+def wants_json() -> bool:
     """Whether the result is for a program."""
     return bool(click.get_current_context().meta.get(AS_JSON))
 
@@ -132,7 +132,7 @@ def show(
     document = Document(Language(LANGUAGE.get()), "", choices, pictures=False)
     frame = dict.fromkeys(("path", "site_root", "other", "other_page", "code_version"), "")
     html = document.render(template, **{"simulated": False, "has_reports": False, **frame, **shown})
-    if as_json():
+    if wants_json():
         click.echo(_to_json({name: shown[name] for name in fields}, html))
     else:
         from dashboards.terminal import to_text

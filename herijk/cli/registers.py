@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 def register(
     edition: str | None, due: bool, years: bool, store: "Store", as_of: dt.date | None
 ) -> None:
-    """The register: every line with its sizes, and whether it is valid on a day."""
+    """Show the register: every line with its sizes, and whether it is valid on a day."""
     from dashboards.queries import pages
 
     if years:
@@ -88,7 +88,7 @@ def _choose_method(store: "Store", edition: str | None) -> str | None:
 @option("--method", help="Method whose factors are shown. Default: the best that was applied.")
 @form_options
 def seasons(store: "Store", method: str | None) -> None:
-    """What was wrong with log, force and wind in each season, and how sure that is."""
+    """Show what was wrong with log, force and wind in each season, and how sure that is."""
     from dashboards.queries import pages
     from warehouse.store.methods import KnownMethods
 

@@ -102,7 +102,7 @@ def workbench(store: "Store", port: int) -> None:
     from warehouse.queries.history import History
 
     listening = listen(LOOPBACK, port)
-    bench = Bench(store, History.of(store))
+    bench = Bench(store, History.from_store(store))
     where = get_address(listening)
     click.echo(tell("The workbench is at {} (on this machine only); Ctrl-C stops it.", where))
     with suppress(KeyboardInterrupt):

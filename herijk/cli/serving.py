@@ -62,7 +62,7 @@ class Served:
 
 
 def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -> None:
-    """Serves until SIGINT or SIGTERM.
+    """Serve until SIGINT or SIGTERM.
 
     Args:
         what: folders and address.
@@ -95,7 +95,7 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
 
 
 def site_app(data: Path) -> Starlette:
-    """The site and the reports of a data folder, and nothing else of it."""
+    """Return the site and the reports of a data folder, and nothing else of it."""
     shown = [
         Mount(f"/{name}", StaticFiles(directory=data / name, check_dir=False)) for name in SHOWN
     ]
@@ -119,7 +119,7 @@ def _site(what: Served) -> Iterator[None]:
 
 @contextmanager
 def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[bytes]]]:
-    """Starts web page and daemon; ends them, and what they started, when left."""
+    """Start web page and daemon; ends them, and what they started, when left."""
     environment = os.environ | {
         "DAGSTER_HOME": str(home),
         "HERIJK_ARCHIVE": str(what.archive.resolve()),

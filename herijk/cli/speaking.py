@@ -22,7 +22,7 @@ Sections = Mapping[str, Sequence[str]]
 
 
 def language_of(arguments: Sequence[str], environment: Mapping[str, str]) -> str:
-    """The language that `--lang` asks for, or else that of the system: `nl` or `en`."""
+    """Return the language that `--lang` asks for, or else that of the system: `nl` or `en`."""
     after = pairwise(arguments)
     asked = [
         *(argument.partition("=")[2] for argument in arguments if argument.startswith("--lang=")),
@@ -42,8 +42,8 @@ def speak(language: str) -> None:
     os.environ["LANGUAGE"] = language  # where gettext looks first
 
 
-def in_words(command: click.Command) -> None:
-    """Puts what a command, its parameters and the commands below it say of themselves in words."""
+def translate_help(command: click.Command) -> None:
+    """Put what a command, its parameters and the commands below it say of themselves in words."""
     described: Any
     for described in (command, *command.params):
         described.english = getattr(described, "english", " ".join((described.help or "").split()))
@@ -51,7 +51,7 @@ def in_words(command: click.Command) -> None:
     if shown := command.get_help_option(click.Context(command)):
         shown.help = tell(HELP)
     for inner in getattr(command, "commands", {}).values():
-        in_words(inner)
+        translate_help(inner)
 
 
 option = partial(click.option, show_default=True)
@@ -90,14 +90,14 @@ class Group(Command, click.Group):
         parent: click.Context | None = None,
         **extra: Any,
     ) -> click.Context:
-        """Reads the arguments, from here on in the language that they ask for."""
+        """Read the arguments, from here on in the language that they ask for."""
         if parent is None:
             speak(language_of(args, os.environ))
-            in_words(self)
+            translate_help(self)
         return super().make_context(info_name, args, parent, **extra)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Writes the sections of the overview."""
+        """Write the sections of the overview."""
         sections = self.sections or {gettext.gettext("Commands"): self.list_commands(ctx)}
         for heading, names in sections.items():
             with formatter.section(tell(heading)):

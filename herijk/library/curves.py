@@ -51,13 +51,13 @@ class Curve:
     s_s2_m2: float
 
     @classmethod
-    def of(cls, a_kg_m: float, b_m_s: float | None) -> Self:
+    def from_a_b(cls, a_kg_m: float, b_m_s: float | None) -> Self:
         """Return the curve of an A and a B; no B is a flat curve.
 
         Raises:
             HerijkError: A or B is not a positive number.
 
-        >>> Curve.of(20.0, 4.0).cw_kg_m(2.0)
+        >>> Curve.from_a_b(20.0, 4.0).cw_kg_m(2.0)
         array(26.66666667)
         """
         if not all(0.0 < number < np.inf for number in (a_kg_m, 1.0 if b_m_s is None else b_m_s)):
@@ -84,7 +84,7 @@ class Curve:
     def power_w(self, speed_m_s: ArrayLike) -> FloatArray:
         """Power through the water, P = Cw v^3, of the whole crew.
 
-        >>> Curve.of(20.0, None).power_w(3.0)
+        >>> Curve.from_a_b(20.0, None).power_w(3.0)
         array(540.)
         """
         speed = np.asarray(speed_m_s, dtype=np.float64)
@@ -96,7 +96,7 @@ class Curve:
         Raises:
             HerijkError: a power is negative or not a number.
 
-        >>> Curve.of(20.0, None).speed_m_s(540.0).round(9)
+        >>> Curve.from_a_b(20.0, None).speed_m_s(540.0).round(9)
         np.float64(3.0)
         """
         power = _none_below_zero(power_w)

@@ -87,24 +87,27 @@ def read_load_cell(
     """Return what the load cell feels: water, air, inertia, and the unrest of tow line and helm."""
     count, step_s = time_s.size, RUN_SECONDS / time_s.size
 
-    def at_samples(slow: Floats) -> Floats:
+    def interpolate_to_samples(slow: Floats) -> Floats:
         return np.interp(time_s, run.grid_s, slow)
 
-    speed_m_s = at_samples(run.speed_m_s)
+    speed_m_s = interpolate_to_samples(run.speed_m_s)
     cw = water_cw_kg_m(tow.hull, speed_m_s, tow.water_temperature_c)
     water_n = cw * speed_m_s**2 * tow.truth.askew_ratio
     air_n = air_force_n(
-        tow.hull, at_samples(run.wind_ahead_m_s), at_samples(run.wind_abeam_m_s), air
+        tow.hull,
+        interpolate_to_samples(run.wind_ahead_m_s),
+        interpolate_to_samples(run.wind_abeam_m_s),
+        air,
     )
     mass_kg = tow.hull.displacement_kg * (1.0 + ADDED_MASS)
-    inertia_n = defects.inertia * mass_kg * at_samples(run.acceleration_m_s2)
+    inertia_n = defects.inertia * mass_kg * interpolate_to_samples(run.acceleration_m_s2)
     wander = smooth_wander(
         streams[Component.FORCE_WANDER], run.grid_s.size, 1.0 / SLOW_HZ, FORCE_WANDER_S
     )
     noise = coloured_noise(streams[Component.FORCE_NOISE], count, step_s, FORCE_NOISE_S)
     unrest = (
         defects.surge_force * _surge(time_s, run.grid_s, streams[Component.FORCE_SURGE])
-        + at_samples(defects.force_wander * wander + run.steering_force)
+        + interpolate_to_samples(defects.force_wander * wander + run.steering_force)
         + defects.force_noise * noise
     )
     felt_n = water_n * (1.0 + unrest) + air_n + inertia_n

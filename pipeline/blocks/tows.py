@@ -97,14 +97,14 @@ class Tows:
         return self.blocks.runs["direction"].to_numpy().astype(np.int64)
 
     @cached_property
-    def in_second_file(self) -> BoolArray:
+    def is_in_second_file(self) -> BoolArray:
         """Runs of the second file of a combined tow, shape (runs,)."""
         return self.blocks.runs["run"].to_numpy() > SECOND_FILE_OFFSET
 
     @property
     def file(self) -> IntArray:
         """Index of each run's file, two per tow, shape (runs,)."""
-        return 2 * self.tow + self.in_second_file
+        return 2 * self.tow + self.is_in_second_file
 
     @property
     def target_speed_ratio(self) -> FloatArray:

@@ -139,7 +139,7 @@ def estimate_files_log_sd(c: Computed) -> FloatArray:
     half as far. Pooled over the season's combined tows; 0 for others, and where each is calibrated.
     """
     residual, is_used, _ = _compute_residuals(c)
-    is_second = c.tows.group_by_tow(c.tows.in_second_file.astype(np.float64)) > 0
+    is_second = c.tows.group_by_tow(c.tows.is_in_second_file.astype(np.float64)) > 0
     in_first, in_second = is_used & ~is_second, is_used & is_second
     is_combined = in_first.any(axis=1) & in_second.any(axis=1) & ~c.speed.is_calibrated
     first_mean = (residual * in_first).sum(axis=1) / np.maximum(in_first.sum(axis=1), 1)

@@ -82,7 +82,7 @@ class Computed:
 
     Attributes:
         plan: the tows and their steps.
-        windows: of every run, by name as `Windows.of_runs` has them, shape (runs,).
+        windows: of every run, by name as `Windows.columns_of_runs` has them, shape (runs,).
         means: of every run over its window, in log speed.
         instruments: what was estimated of each tow's instruments, a row per tow, as
             `season_factors.instruments_of` gives it; null where nothing was.
@@ -151,7 +151,7 @@ class Computed:
         return np.asarray(self.reasons == "")
 
     @cached_property
-    def in_fit(self) -> BoolArray:
+    def is_in_fit(self) -> BoolArray:
         """Runs that count, of tows that have enough of them, and both ways, shape (runs,)."""
         enough = self.tows.count(self.used) >= FEWEST_RUNS
         return self.used & (enough & self.tows.both_ways(self.used))[self.tows.tow]
@@ -218,7 +218,7 @@ class Computed:
 
     def points_with(self, cw_kg_m: FloatArray) -> curve.Points:
         """Return points of all tows that have enough runs, for a batch fit."""
-        is_used = self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)
+        is_used = self.is_in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)
         return curve.Points(
             speed_m_s=self.tows.group_by_tow(self.speed_m_s),
             cw_kg_m=self.tows.group_by_tow(cw_kg_m),
@@ -235,7 +235,7 @@ class Computed:
         """The hyperbola that the method chooses, shape (tows,)."""
         hull_speed = hull_speed_m_s(self.tows.get_of_tows("waterline_length_m"))
         capped = curve.fit_capped(self.points, self.free, CAP_HULL_SPEEDS * hull_speed)
-        return curve.chosen(self.options.caps_b, capped, self.free)
+        return curve.choose_curves(self.options.caps_b, capped, self.free)
 
     @property
     def cw_at_declared(self) -> FloatArray:

@@ -230,7 +230,7 @@ Factor = tuple[float, float | None, float | None, str]
 def _find_season_factor(steps: Steps, season: int, estimated: SeasonFactors | None) -> Factor:
     """Return the factor where tows are not calibrated on GPS: estimated, prescribed or none."""
     is_asked = estimated is not None and steps.speed.correction == "estimated"
-    if estimated is not None and is_asked and (known := estimated.of_season(season)) is not None:
+    if estimated is not None and is_asked and (known := estimated.get_season(season)) is not None:
         return known
     factor = steps.speed.prescribed
     if estimated is not None and estimated.is_refused(season):

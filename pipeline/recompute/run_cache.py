@@ -24,7 +24,7 @@ class RunCache:
     def average(
         self, tows: Tows, is_trimmed: bool, averaging_s: int, is_robust: bool
     ) -> dict[str, Any]:
-        """Return `Windows.of_runs` and `window_means` of every run by name, (runs,) each."""
+        """Return `Windows.columns_of_runs` and `window_means` by name, (runs,) each."""
         key = (tuple(tows.frame["tow_id"]), is_trimmed)
         if key not in self._windows:
             find = steady_windows if is_trimmed else take_whole_runs
@@ -33,5 +33,5 @@ class RunCache:
         averaged = (*key, averaging_s, is_robust)
         if averaged not in self._means:
             means = window_means(tows.blocks, windows, averaging_s, is_robust)
-            self._means[averaged] = windows.of_runs | means
+            self._means[averaged] = windows.columns_of_runs | means
         return self._means[averaged]

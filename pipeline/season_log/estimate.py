@@ -55,7 +55,7 @@ class SeasonFactors:
             sd = np.where(season >= first, of_era, sd)
         return sd
 
-    def of_season(self, season: int) -> tuple[float, float, float, str] | None:
+    def get_season(self, season: int) -> tuple[float, float, float, str] | None:
         """Return factor, bounds and source of a season; None where it is not determined.
 
         Where the log was replaced, the factor is the mean over the tows of its determined parts.

@@ -86,7 +86,7 @@ def gps_factor_of_files(
     y, known = factor(tows.file, used, files)
     of_all, known_of_all = factor(tows.file, steady, files)
     of_tow, known_of_tow = factor(tows.tow, used, tows.size)
-    known_of_all &= np.repeat(tows.any(tows.in_second_file), 2)
+    known_of_all &= np.repeat(tows.any(tows.is_in_second_file), 2)
     y = np.select([known, known_of_all], [y, of_all], np.repeat(of_tow, 2))
     known = known | known_of_all | np.repeat(known_of_tow, 2)
     return y.reshape(-1, 2), known.reshape(-1, 2)

@@ -97,7 +97,7 @@ class Windows:
         return np.maximum(np.maximum(speed, force), np.abs(self.wind_rise_m_s) / WIND_ENDS_M_S)
 
     @property
-    def of_runs(self) -> dict[str, Any]:
+    def columns_of_runs(self) -> dict[str, Any]:
         """What a method keeps of them, (runs,) each: all but the mask."""
         return {
             "start_s": self.start_s,

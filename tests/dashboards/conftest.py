@@ -74,7 +74,7 @@ def attacked(built):
 
 @pytest.fixture(scope="session")
 def history(built):
-    return History.of(built.store)
+    return History.from_store(built.store)
 
 
 @pytest.fixture

@@ -52,11 +52,11 @@ def test_a_drag_that_grows_with_speed_squared_has_no_b():
 
 
 def test_a_curve_shows_the_numbers_that_people_know():
-    assert repr(herijk.Curve.of(21.0, 4.0)) == "Curve(a_kg_m=21.0, b_m_s=4.0)"
+    assert repr(herijk.Curve.from_a_b(21.0, 4.0)) == "Curve(a_kg_m=21.0, b_m_s=4.0)"
 
 
 def test_power_and_speed_are_inverse():
-    curve = herijk.Curve.of(21.0, 4.4)
+    curve = herijk.Curve.from_a_b(21.0, 4.4)
     assert curve.speed_m_s(curve.power_w(3.1)) == pytest.approx(3.1)
 
 
@@ -80,7 +80,7 @@ def test_points_without_a_curve_are_refused(speed, force):
 )
 def test_what_no_boat_can_have_is_refused(ask):
     with pytest.raises(herijk.HerijkError):
-        ask(herijk.Curve.of(21.0, 4.4))
+        ask(herijk.Curve.from_a_b(21.0, 4.4))
 
 
 def test_one_tow_under_a_method(small_world):

@@ -257,7 +257,7 @@ def test_parts_of_a_season_have_factors_of_their_own():
     first, second = whole.factors.filter(season=2011).iter_rows(named=True)
     assert (first["part"], second["part"]) == (0, 1)
     assert math.log(second["factor"] / first["factor"]) == pytest.approx(0.03, abs=0.006)
-    factor, lo, hi, source = whole.of_season(2011)  # both have 20 tows
+    factor, lo, hi, source = whole.get_season(2011)  # both have 20 tows
     assert factor == pytest.approx(math.sqrt(first["factor"] * second["factor"]))
     assert hi - lo < min(part["hi"] - part["lo"] for part in (first, second))
     assert source == "estimated"

@@ -19,7 +19,7 @@ extends = "{base}"
 
 @pytest.fixture(scope="module")
 def history(built):
-    return History.of(built.store)
+    return History.from_store(built.store)
 
 
 @pytest.fixture(scope="module")

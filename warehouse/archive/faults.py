@@ -15,7 +15,7 @@ from pipeline.tables.frames import frame_of
 from pipeline.tables.lake import Faults
 from pipeline.tables.row import Row
 from warehouse.archive.columns import DefectiveHeaderError
-from warehouse.store.unforeseen import UNFORESEEN, format_traceback, in_short, is_unforeseen
+from warehouse.store.unforeseen import UNFORESEEN, format_traceback, is_unforeseen, shorten_error
 
 Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
 """What a fault costs: seconds of one channel of a run, a run, a tow, or a file; or a row of a list
@@ -110,6 +110,6 @@ def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fa
     message = say(
         "Herijk itself failed on this list ({}). It may be sound. Please report this to the "
         "maintainer of Herijk, with the folder unforeseen of the data folder.",
-        in_short(error),
+        shorten_error(error),
     )
     return Failure(path, tow_id, None, UNFORESEEN, message, trace=format_traceback(error))

@@ -21,9 +21,9 @@ from warehouse.derive.registers import members_of
 from warehouse.store.unforeseen import (
     UNFORESEEN,
     format_traceback,
-    in_short,
     is_unforeseen,
     sentence,
+    shorten_error,
 )
 
 METHOD_TABLES: Final = (
@@ -105,7 +105,7 @@ def recompute_archive(methods: Sequence[Method], archive: ArchiveRuns) -> Recomp
     paths = dict(archive.tows.select("tow_id", "samples_path").rows())
     faults = []
     for tow_id, error in failing.items():
-        message = sentence(tow_id, in_short(error))
+        message = sentence(tow_id, shorten_error(error))
         faults.append(Fault(paths[tow_id], tow_id, None, UNFORESEEN, message))
     return RecomputedArchive(
         tables={name: pl.concat([one[name] for one in made]) for name in METHOD_TABLES},

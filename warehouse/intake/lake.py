@@ -39,10 +39,10 @@ from warehouse.store.store import (
 from warehouse.store.unforeseen import (
     UNFORESEEN,
     format_traceback,
-    in_short,
     is_unforeseen,
     note,
     sentence,
+    shorten_error,
 )
 
 LAKE_FORM: Final = {
@@ -147,7 +147,7 @@ def _bring_in(
         if not is_unforeseen(error):
             raise
         note(store.root, tow["tow_id"], format_traceback(error))
-        message = sentence(tow["tow_id"], in_short(error))
+        message = sentence(tow["tow_id"], shorten_error(error))
         fault = Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
     else:
         return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}

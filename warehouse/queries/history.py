@@ -48,7 +48,7 @@ class History:
     cache: RunCache = field(default_factory=RunCache)
 
     @classmethod
-    def of(cls, store: Store) -> Self:
+    def from_store(cls, store: Store) -> Self:
         """Read the histories from the lake.
 
         Raises:

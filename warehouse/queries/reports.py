@@ -51,7 +51,7 @@ class RebuildReport:
 
 
 def rebuild_report(store: Store) -> RebuildReport:
-    """What the warehouse holds: tows by season, and what is set aside."""
+    """Return what the warehouse holds: tows by season, and what is set aside."""
     with open_database(store.database) as db:
         return RebuildReport(
             database=str(store.database),

@@ -32,7 +32,7 @@ def is_unforeseen(error: BaseException) -> bool:
     return not isinstance(error, _NOT_OURS) and not is_machine_fault(error)
 
 
-def in_short(error: BaseException) -> str:
+def shorten_error(error: BaseException) -> str:
     """Kind and first words of an error."""
     return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
 
