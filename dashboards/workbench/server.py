@@ -156,7 +156,7 @@ class BenchPage:
         """Return the controls of each step, with their values in the seasons that are shown."""
         method = self._bench.make_method(asked)
         shown = [
-            SeasonSteps(first=r.first, last=r.last, steps=method.for_season(r.first))
+            SeasonSteps(first=r.first, last=r.last, steps=method.get_steps(r.first))
             for r in ranges
             if asked.at in ("", str(r.first))
         ]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from herijk.cli.options import archive_option, data_option, form_options, show
+from herijk.cli.options import archive_option, data_option, form_options, show, wants_json
 from herijk.cli.speaking import Command, argument, flag, option
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import tell

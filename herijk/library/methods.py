@@ -60,7 +60,7 @@ def method(name_or_file: str | Path) -> Method:
     Raises:
         HerijkError: there is no such method, or the file has an error, with its line.
 
-    >>> method("rebased-2015").for_season(2010).window.rule
+    >>> method("rebased-2015").get_steps(2010).window.rule
     'steady'
     """
     file = Path(name_or_file)

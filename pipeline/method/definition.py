@@ -71,7 +71,7 @@ class Method(Declared):
         """Return the description in `nl` or `en`."""
         return self.description if language == "nl" else self.description_en
 
-    def for_season(self, season: int) -> Steps:
+    def get_steps(self, season: int) -> Steps:
         """Return the steps of a season.
 
         Raises:

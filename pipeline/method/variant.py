@@ -51,7 +51,7 @@ def cut_at(method: Method, seasons: Iterable[int]) -> tuple[SeasonSteps, ...]:
     firsts = sorted(cuts | {s for s in seasons if whole_first < s <= whole_last})
     lasts = [*(first - 1 for first in firsts[1:]), whole_last]
     return tuple(
-        SeasonSteps(first=first, last=last, steps=method.for_season(first))
+        SeasonSteps(first=first, last=last, steps=method.get_steps(first))
         for first, last in zip(firsts, lasts, strict=True)
     )
 
@@ -97,7 +97,7 @@ def differences(method: Method, parent: Method) -> list[Difference]:
         for block in pieces:
             old, new = (
                 getattr(getattr(steps, step), option)
-                for steps in (parent.for_season(block.first), block.steps)
+                for steps in (parent.get_steps(block.first), block.steps)
             )
             if old != new:
                 one = Difference(step, option, block.first, block.last, (old,), new)

@@ -55,7 +55,7 @@ class Plan:
         place_of_group: dict[tuple[Steps, Steps], int] = {}
         place: dict[tuple[int, bool], int] = {}
         for season, gps in sorted(set(of_tows), key=lambda one: (one[0], not one[1])):
-            steps = method.for_season(season)
+            steps = method.get_steps(season)
             own = steps if gps else find_tows_without_gps(steps)
             place[season, gps] = place_of_group.setdefault((steps, own), len(place_of_group))
         return cls(

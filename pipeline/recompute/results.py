@@ -97,7 +97,7 @@ def build_tables(
     rejecting = [
         (season, check)
         for season in c.tows.frame["season"].unique().sort()
-        for check in method.for_season(season).assessment.reject
+        for check in method.get_steps(season).assessment.reject
     ]
     return Recomputed(
         run_points=run_points,

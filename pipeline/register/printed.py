@@ -72,7 +72,7 @@ def _season_factor(season: int, known: dict[int, float], method: Method) -> floa
     calibrated too. Else what was found for the season; without tows of it, what is prescribed.
     """
     try:
-        steps = method.for_season(season)
+        steps = method.get_steps(season)
     except MissingKnowledgeError:
         return 1.0  # the method says nothing about it, so the line stays as printed
     if steps.calibration.rule != "none":

@@ -92,7 +92,7 @@ def test_an_address_asks_again_what_it_was_made_from(workbench):
 def test_a_change_holds_for_all_seasons_or_for_those_from_one_on(workbench):
     assert side(workbench.make_method(asked(workbench, **SIDE))) == {0.77}
     method = workbench.make_method(asked(workbench, **SIDE, **{"wind.side.2014": "0.9"}))
-    assert (method.for_season(2009).wind.side, method.for_season(2014).wind.side) == (0.77, 0.9)
+    assert (method.get_steps(2009).wind.side, method.get_steps(2014).wind.side) == (0.77, 0.9)
     assert [d.option for d in workbench.list_changes(asked(workbench, **SIDE))] == ["side"]
 
 

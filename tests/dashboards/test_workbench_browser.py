@@ -163,7 +163,7 @@ def test_a_method_is_saved_once(page, workbench):
     path = workbench.known.folder / "lagere-grens.toml"
     assert str(path) in page.locator("#saved").inner_text()
     method = parse_method(path.read_text(encoding="utf-8"), str(path))
-    assert method.for_season(2014).wind.side == 1.5
+    assert method.get_steps(2014).wind.side == 1.5
     assert (method.title, method.description) == ("Lagere grens", "Een proef.")
     page.locator("#save").click()
     page.locator("#refused:not(:empty)").wait_for()

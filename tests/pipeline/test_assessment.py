@@ -470,7 +470,7 @@ def test_a_method_says_which_checks_reject() -> None:
         '[[overrides]]\nrange = "2014:"\nassessment = { reject = ["few_runs", "slow_tow"] }\n'
     )
     strict, parent = parse_method(text, "strict.toml"), read_shipped_method("rebased-2015")
-    assert strict.for_season(2012).assessment.reject == ("few_runs",)
-    assert strict.for_season(2014).assessment.reject == ("few_runs", "slow_tow")
-    assert parent.for_season(2014).assessment.reject == ()
+    assert strict.get_steps(2012).assessment.reject == ("few_runs",)
+    assert strict.get_steps(2014).assessment.reject == ("few_runs", "slow_tow")
+    assert parent.get_steps(2014).assessment.reject == ()
     assert strict.content_hash != parent.content_hash

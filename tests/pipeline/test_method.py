@@ -131,25 +131,25 @@ def test_a_child_takes_all_and_replaces_what_it_names():
     )
     made = parse(child, parent=parent)
     assert [(r.first, r.last) for r in made.ranges] == [(2009, 2011), (2012, 2013), (2014, 9999)]
-    wind = made.for_season(2010).wind
+    wind = made.get_steps(2010).wind
     assert (wind.model, wind.ahead, wind.behind) == ("head", 0.4, 0.7)
-    assert made.for_season(2012).wind.behind == 0.6
-    assert made.for_season(2010).curve == parse(parent).for_season(2010).curve
+    assert made.get_steps(2012).wind.behind == 0.6
+    assert made.get_steps(2010).curve == parse(parent).get_steps(2010).curve
 
 
 def test_a_season_before_the_first_is_missing_knowledge():
     made = parse(write_method_text().replace("title =", 'seasons = "2012:2016"\ntitle ='))
     for season in (2011, 2017):
         with pytest.raises(MissingKnowledgeError, match=rf"{season}.*2012 to 2016"):
-            made.for_season(season)
-    assert made.for_season(2012) == made.for_season(2016)
+            made.get_steps(season)
+    assert made.get_steps(2012) == made.get_steps(2016)
 
 
 def test_tows_of_2014_were_recomputed_by_all_rules_of_2015():
     """Slide "2014 opnieuw berekend": Cw "na alle verbeteringen in berekening"."""
     published, at_first = map(read_shipped_method, ("as-published", "as-published-2014"))
-    assert published.for_season(2014) == published.for_season(2015)
-    assert at_first.for_season(2014) == published.for_season(2013)
+    assert published.get_steps(2014) == published.get_steps(2015)
+    assert at_first.get_steps(2014) == published.get_steps(2013)
 
 
 SAME_RESULT = {

@@ -71,6 +71,6 @@ def test_a_file_names_only_what_differs(made):
     found = differences(method, base)
     assert named == {(one.step, one.option) for one in found}
     for one in found:
-        changed = getattr(getattr(method.for_season(one.first), one.step), one.option)
+        changed = getattr(getattr(method.get_steps(one.first), one.step), one.option)
         assert changed == one.after
         assert one.after not in one.before

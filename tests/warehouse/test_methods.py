@@ -34,7 +34,7 @@ def test_without_files_there_are_those_that_ship(known):
 def test_a_file_is_kept_under_its_name(known, tmp_path):
     assert known.keep(write(tmp_path / "draft.toml", OWN)) == "ours"
     assert known.own == ("ours",)
-    assert known.get("ours").for_season(2010).wind.side == 0.3
+    assert known.get("ours").get_steps(2010).wind.side == 0.3
     assert known.keep("ours") == "ours"
 
 
@@ -42,7 +42,7 @@ def test_one_own_method_extends_another(known, tmp_path):
     known.keep(write(tmp_path / "draft.toml", OWN))
     child = OWN.replace('"ours"', '"theirs"').replace("rebased-2015", "ours").replace("0.3", "0.4")
     method = known.named(write(tmp_path / "child.toml", child))
-    assert method.for_season(2010).wind.side == 0.4
+    assert method.get_steps(2010).wind.side == 0.4
 
 
 @pytest.mark.parametrize(
