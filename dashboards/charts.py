@@ -340,7 +340,7 @@ def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
 
     Args:
         language: of what is written.
-        lines: with `gain_in_two_hours_s` [s], `exceeds_interval`, and the boat and crew.
+        lines: with `gain_in_two_hours_s` [s], the boat and crew, and `exceeds_interval` if known.
         caption: of the picture.
     """
     known = lines.drop_nulls("gain_in_two_hours_s")
@@ -362,7 +362,7 @@ def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
         y = plot.top + (place + 0.5) * GAIN_ROW_PX
         crew = f"{row['name'] or row['fsn_no']} {row['rowers']}{row['crew_class']}"
         written = language.write_number(gain, 0, "+")
-        opacity = WITHIN_OPACITY if row["exceeds_interval"] is False else None
+        opacity = WITHIN_OPACITY if row.get("exceeds_interval") is False else None
         style = {"stroke-width": 0.7 * GAIN_ROW_PX, "stroke-opacity": opacity}
         ink = INKS[1] if gain < 0 else INKS[0]
         plot.add_path(f"M{x(0):.1f} {y:.1f}H{x(gain):.1f}", ink, f"{crew}: {written} s", style)

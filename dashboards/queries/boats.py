@@ -156,7 +156,7 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     # An edition holds no faults of instruments.
     faults = season_faults(results.views) if edition.startswith(DRAFT) else {}
     ends = ["cw_lo_kg_m", "cw_hi_kg_m"]
-    old_ends = results.register.filter(edition=previous).select(
+    old_ends = results.register.filter(edition=previous or "").select(
         *CREW, "empty_thwart", *(pl.col(name).alias(f"old_{name}") for name in ends)
     )
     lines = lines.join(

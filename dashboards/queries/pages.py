@@ -299,7 +299,7 @@ def sum_up_repeats(spread: pl.DataFrame, method: str) -> Data:
         method: the other.
 
     Returns:
-        `repeats`: for every era its name, `now` and `then`.
+        `repeats_by_era`: for every era its name, `now` and `then`.
     """
     by_era = spread.filter(pl.col("scope") != "all").drop_nulls("sd_ratio")
     repeats = []
@@ -308,7 +308,7 @@ def sum_up_repeats(spread: pl.DataFrame, method: str) -> Data:
         then, now = next(iter(by_method.values())), by_method.get(method)
         if now is not None:
             repeats.append({"era": era, "now": now, "then": then})
-    return {"repeats": repeats}
+    return {"repeats_by_era": repeats}
 
 
 def _tabulate_ladder(ladder: pl.DataFrame) -> pl.DataFrame:

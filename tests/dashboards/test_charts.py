@@ -52,10 +52,20 @@ LINES = pl.DataFrame(
     ]
 )  # fmt: skip
 GAINS = pl.DataFrame(
-    [("Vlet", "FSN1", 8, "H", 20.0), ("A<b", "FSN2", 6, "D", -35.0)],
-    schema=["name", "fsn_no", "rowers", "crew_class", "gain_in_two_hours_s"],
+    [("Vlet", "FSN1", 8, "H", 20.0, False), ("A<b", "FSN2", 6, "D", -35.0, True)],
+    schema=["name", "fsn_no", "rowers", "crew_class", "gain_in_two_hours_s", "exceeds_interval"],
     orient="row",
 )
+CHANGES = pl.DataFrame(
+    [("rebased", 2009, 0.88, 0.86, 0.9), ("rebased", 2014, 0.99, 0.98, 1.0)],
+    schema=["method", "season", "median_ratio", "lowest_ratio", "highest_ratio"],
+    orient="row",
+)
+ANSWER = {
+    "old_cw_kg_m": 24.0, "old_cw_lo_kg_m": 23.3, "old_cw_hi_kg_m": 24.7, "old_log_known": False,
+    "cw_kg_m": 23.2, "cw_lo_kg_m": 22.7, "cw_hi_kg_m": 23.8, "new_log_known": True,
+    "peers": [24.1, 24.5],
+}  # fmt: skip
 BUDGET = pl.DataFrame({"component": ["random", "wind"], "u_ratio": [0.01, 0.002]})
 SECONDS = pl.DataFrame(
     {"run": [1, 1, 2, 2], "second": [0, 1, 0, 1], "speed_m_s": [2.4, 2.5, 2.6, 2.5],
@@ -74,6 +84,8 @@ DRAWN = {
     "scatter": lambda: charts.draw_scatter(
         NL, TOWS, LINES, "b_m_s", ("b_lo_m_s", "b_hi_m_s"), "weight_kg", "B tegen gewicht"
     ),
+    "seasons": lambda: charts.draw_seasons(NL, CHANGES, "Seizoenen"),
+    "number": lambda: charts.draw_number(NL, ANSWER, "Getal"),
     "gains": lambda: charts.draw_gains(NL, GAINS, "Tijd"),
     "shares": lambda: charts.draw_shares(NL, BUDGET, "component", "u_ratio", "Onzekerheid"),
     "trace lines": lambda: charts.trace_lines(SECONDS),

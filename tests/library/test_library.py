@@ -74,8 +74,8 @@ def test_points_without_a_curve_are_refused(speed, force):
         lambda curve: curve.cw_kg_m([3.0, float("nan")]),
         lambda curve: curve.power_w(-3.0),
         lambda curve: curve.speed_m_s(-1.0),
-        lambda curve: curve.of(-20.0, 4.0),
-        lambda curve: curve.of(20.0, 0.0),
+        lambda curve: curve.from_a_b(-20.0, 4.0),
+        lambda curve: curve.from_a_b(20.0, 0.0),
     ],
 )
 def test_what_no_boat_can_have_is_refused(ask):

@@ -42,17 +42,6 @@ def test_statistics_are_those_of_the_warehouse(scenario, built, table):
     assert_frame_equal(found, built.table(table).select(found.columns), check_row_order=False)
 
 
-def test_tows_of_types_are_those_of_the_warehouse(scenario, built):
-    found = scenario.type_tows()
-    stored = built.table("compared_tows").filter(
-        pl.col("method").is_in(METHODS), pl.col("boat_type") != "unknown"
-    )
-    columns = [c for c in found.columns if c in stored.columns]
-    assert_frame_equal(found.select(columns), stored.select(columns), check_row_order=False)
-    newest = stored.filter("newest")["tow_id"]
-    assert set(scenario.type_tows("newest")["tow_id"]) == set(newest)
-
-
 def test_changes_are_counted_and_the_largest_stands_above(scenario, built):
     lines, summary = scenario.register_lines, scenario.summary()
     stored = built.table("register_changes")
@@ -96,4 +85,3 @@ def test_a_method_that_no_tow_survives_is_shown_too(history, scenario, monkeypat
         assert isinstance(frame, pl.DataFrame)
     fsn_no = history.tows["fsn_no"][0]
     assert set(both.boat_figure(fsn_no)["method"]) == {scenario.before.method.name}
-    assert both.type_tows().filter(method="none").is_empty()
