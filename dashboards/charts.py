@@ -394,7 +394,7 @@ def draw_shares(
         y = row_px * (place + 0.5) + 6
         plot.add_text(left - 6, y + 4, language.write(name, row[name]), "end")
         bar = f"M{x(0):.1f} {y:.1f}H{x(row[value]):.1f}"
-        plot.add_path(bar, INKS[0], language.write(value, row[value]), {"stroke-width": 14})
+        plot.add_path(bar, INKS[0], style={"stroke-width": 14})
         plot.add_text(x(row[value]) + 5, y + 4, language.write(value, row[value]), size=11)
     return plot.to_svg(caption)
 
@@ -472,7 +472,8 @@ def _draw_cuts(
     language: Language, points: pl.DataFrame, scales: Mapping[int, Scale], plot: Plot
 ) -> list[str]:
     """Return grey over the seconds of each run that do not count, with the reason above them."""
-    marks = []
+    texts = []
+    shape = ""
     height = len(TRACES) * TRACE_ROW_PX - 16
     for row in points.to_dicts():
         if row["run"] not in scales:
@@ -481,14 +482,13 @@ def _draw_cuts(
         start, end = row["window_start_s"], row["window_end_s"]
         cuts = [(0, x.high)] if start is None or end is None else [(0, start), (end, x.high)]
         for first, last in cuts:
-            width = max(x(last) - x(first), 0)
-            marks.append(
-                f'<rect x="{x(first):.1f}" y="{plot.top - 4}" width="{width:.1f}" '
-                f'height="{height}" fill="{GREY}" fill-opacity="0.3"/>'
-            )
+            if last > first:
+                right = x(last)
+                shape += f"M{x(first):.1f} {plot.top - 4}H{right:.1f}v{height}H{x(first):.1f}z"
         why = language.write("reason", row["reason"] or row["cut_reason"])
-        marks.append(f'<text x="{x.start:.1f}" y="25" font-size="9">{escape(why)}</text>')
-    return marks
+        if why:
+            texts.append(f'<text x="{x.start:.1f}" y="25" font-size="9">{escape(why)}</text>')
+    return [f'<path d="{shape}" fill="{GREY}" fill-opacity="0.3"/>', *texts]
 
 
 def _write_tip(language: Language, row: Mapping[str, Any], *names: str) -> str:

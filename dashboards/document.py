@@ -8,7 +8,6 @@ value is written as its column is everywhere.
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache
 from typing import Any, Final, TypeAlias
 
 import polars as pl
@@ -246,8 +245,7 @@ class Document:
             look = _choose_look(frame[name], is_on_phones)
             title = self.language.say(titles[name])
             head.append((look, title))
-            label = _attribute("data-label", _unbroken(title)) if cards and is_on_phones else ""
-            cells.append(self._write_cells(frame[name], look, label))
+            cells.append(self._write_cells(frame[name], look))
         lines = map("".join, zip(*cells, strict=True))
         made = get_template("table.html.j2").render(
             heads=head,
@@ -278,9 +276,9 @@ class Document:
             rows.append(f"<tr{self.show_when(when | {follows[-1]: last})}>{line}</tr>")
         return rows
 
-    def _write_cells(self, cells: pl.Series, look: str, label: str) -> list[str]:
-        """Return the cells of a column; `look` is their class, `label` an attribute."""
-        attributes = (f" class={look}" if look else "") + label
+    def _write_cells(self, cells: pl.Series, look: str) -> list[str]:
+        """Return the cells of a column; `look` is their class."""
+        attributes = f" class={look}" if look else ""
         known: dict[str, Markup] = {}  # the same text comes often
 
         def write(value: Any) -> Markup:
@@ -344,12 +342,3 @@ def _says_something(cells: pl.Series) -> bool:
         value is not None and value is not False and value not in ("", [])
         for value in cells.to_list()
     )
-
-
-def _unbroken(title: str) -> str:
-    return title.replace("\u00ad", "").replace("\u200b", "")
-
-
-@cache
-def _attribute(name: str, value: str) -> str:
-    return f' {name}="{escape(value)}"'

@@ -16,7 +16,7 @@ from markupsafe import Markup, escape
 
 from dashboards.language import Language
 
-INKS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+INKS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "currentColor")
 """Colour of each kind of mark, by its number."""
 
 SHAPES: Final = (
@@ -36,6 +36,8 @@ CHARACTER_WIDTH_PX: Final = 6.6
 BULK_QUARTILES: Final = 2.0
 """Interquartile ranges beyond the quartiles that an axis for the bulk of the numbers reaches, so
 that one boat does not squeeze all others."""
+
+FONT_SIZE_PX: Final = 12
 
 TICKS: Final = 5
 """About as many ticks as an axis has."""
@@ -189,31 +191,31 @@ class Plot:
         """
         looks = {"fill": "none", "stroke": ink} | dict(style)
         written = [f' {name}="{value}"' for name, value in looks.items() if value is not None]
-        title = f"<title>{escape(tip)}</title>" if tip else ""
-        self._marks.append(f'<path d="{path}"{"".join(written)}>{title}</path>')
+        end = f"><title>{escape(tip)}</title></path>" if tip else "/>"
+        self._marks.append(f'<path d="{path}"{"".join(written)}{end}')
 
     def add_text(
-        self, x: float, y: float, text: str, anchor: str = "start", size: int = 12
+        self, x: float, y: float, text: str, anchor: str = "start", size: int = FONT_SIZE_PX
     ) -> None:
         """Add a text at a place; `anchor` is which of its ends lies there."""
-        self._marks.append(
-            f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" font-size="{size}">'
-            f"{escape(text)}</text>"
-        )
+        end = f' text-anchor="{anchor}"' if anchor != "start" else ""
+        own_size = f' font-size="{size}"' if size != FONT_SIZE_PX else ""
+        place = f'x="{round(x, 1):g}" y="{round(y, 1):g}"'
+        self._marks.append(f"<text {place}{end}{own_size}>{escape(text)}</text>")
 
     def add_axes(self, x: Scale | None, y: Scale, x_title: str, y_title: str) -> None:
         """Add lines, ticks, numbers and titles; the title of the side stands above it."""
         write = self.language.write_number
+        grid = "".join(f"M{self.left} {y(tick):.1f}H{self.right}" for tick in y.ticks)
+        self.add_path(grid, GREY, style={"stroke-opacity": 0.25})
         for tick in y.ticks:
-            self.add_path(
-                f"M{self.left} {y(tick):.1f}H{self.right}", GREY, style={"stroke-opacity": 0.25}
-            )
             self.add_text(self.left - 6, y(tick) + 4, write(tick, y.decimals), "end")
-        for tick in x.ticks if x else ():
-            self.add_path(f"M{x(tick):.1f} {self.bottom}v4")  # type: ignore[misc]
-            label = write(tick, x.decimals)  # type: ignore[union-attr]
-            self.add_text(x(tick), self.bottom + 17, label, "middle")  # type: ignore[misc]
-        self.add_path(f"M{self.left} {self.bottom}H{self.right}")
+        below = f"M{self.left} {self.bottom}H{self.right}"
+        if x is not None:
+            for tick in x.ticks:
+                below += f"M{x(tick):.1f} {self.bottom}v4"
+                self.add_text(x(tick), self.bottom + 17, write(tick, x.decimals), "middle")
+        self.add_path(below)
         self.add_text(4, self.top - 12, y_title)
         self.add_text((self.left + self.right) / 2, self.height - 6, x_title, "middle")
 
@@ -280,6 +282,7 @@ class Plot:
         label = f'role="img" aria-label="{escape(caption)}"' if caption else 'aria-hidden="true"'
         return Markup(  # noqa: S704 - texts were escaped
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
-            f'{label} fill="currentColor" font-family="Open Sans, sans-serif">'
+            f'{label} fill="currentColor" font-family="Open Sans, sans-serif" '
+            f'font-size="{FONT_SIZE_PX}">'
             f"{''.join(self._marks)}</svg>"
         )

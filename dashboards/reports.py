@@ -9,8 +9,8 @@ import polars as pl
 from dashboards import words
 from dashboards.document import Document
 from dashboards.language import Language
+from dashboards.page import render_page
 from dashboards.reading import read_blocks
-from dashboards.site import render_page
 from pipeline.messages import LANGUAGES
 from warehouse.queries.change_report import ChangeReport
 from warehouse.queries.views import Views

@@ -6,7 +6,7 @@ A new page is a template, a query, and a line in `list_pages`.
 
 import datetime as dt
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,9 +14,8 @@ from typing import Any, Final, TypedDict
 
 from dashboards import charts, fonts
 from dashboards.addresses import boat_path, edition_page, race_path, trace_path, type_path
-from dashboards.document import Document
-from dashboards.language import Language
 from dashboards.markdown import get_title
+from dashboards.page import FOLDERS, render_page
 from dashboards.paper import make_pdf
 from dashboards.queries import boats, methods, pages, types
 from dashboards.queries.results import Data, Results
@@ -28,9 +27,6 @@ from warehouse.store.store import Store
 from warehouse.store.unforeseen import Border, border
 
 STATIC: Final = Path(__file__).parent / "static"
-
-FOLDERS: Final = {"nl": "", "en": "en/"}
-"""Where the pages of each language lie within the site."""
 
 DOWNLOADS: Final = "downloads"
 NOTICES: Final = {"nl": (NOTICE, "bericht.pdf"), "en": (NOTICE_EN, "notice.pdf")}
@@ -149,41 +145,6 @@ def _write_part(
             _write_shared_files(folder, views)
             _write_downloads(folder, store)
     return failed
-
-
-def render_page(
-    path: str,
-    template: str,
-    data: Data,
-    language: str,
-    about: Mapping[str, str],
-    site: str = "",
-    other_page: str = "",
-) -> str:
-    """Return a page in one language.
-
-    Args:
-        path: where it lies within the pages of its language.
-        template: its name.
-        data: what its query found.
-        language: `nl` or `en`.
-        about: what is known about the database.
-        site: the way to the site, of a page that lies outside it.
-        other_page: the same page in the other language, of a page that lies outside the site.
-    """
-    other = next(tag for tag in LANGUAGES if tag != language)
-    root = site + FOLDERS[language] if site else "../" * path.count("/")
-    site_root = site or root + "../" * bool(FOLDERS[language])
-    document = Document(Language(language), root, data.get("chosen"))
-    frame = {
-        "path": path,
-        "site_root": site_root,
-        "other": other,
-        "other_page": other_page or f"{site_root}{FOLDERS[other]}{path}",
-        "simulated": about.get("simulated") == "true",
-        "code_version": about.get("code_version", ""),
-    }
-    return document.render(template, **data, **frame)
 
 
 def _write(path: Path, text: str) -> None:

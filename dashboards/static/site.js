@@ -115,8 +115,14 @@
     event.preventDefault();
     form?.querySelector("input").focus();
   });
+  // A card, which a phone shows in place of a row, names what its cells hold.
+  function label(table) {
+    const titles = all("thead th", table).map((head) => head.textContent.replaceAll("\u00ad", ""));
+    for (const row of table.tBodies[0].rows) for (const cell of row.cells) cell.dataset.label = titles[cell.cellIndex];
+  }
 
   function start() {
+    all("table.cards").forEach(label);
     selects = own();
     first = new Map(selects.map((one) => [one.name, one.value]));
     const asked = new URLSearchParams(location.search);

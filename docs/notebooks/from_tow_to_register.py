@@ -11,11 +11,12 @@ app = marimo.App()
 with app.setup:
     import os
 
-    import altair as alt
     import marimo as mo
     import polars as pl
 
     import herijk
+    from dashboards.language import Language
+    from dashboards.plot import INKS, Plot
 
     METHOD = "rebased-2015"
 
@@ -47,15 +48,13 @@ def _(data, tow):
     rate_hz = tow["sample_rate_hz"]
     seconds = samples.with_columns(second=pl.int_range(pl.len()).over("run") // rate_hz)
     means = seconds.group_by("run", "second", maintain_order=True).agg(pl.col(pl.Float32).mean())
-    trace = (
-        alt.Chart(means.select("run", "second", "log1_m_s"))
-        .mark_line()
-        .encode(
-            alt.X("second", title="time in the run [s]"),
-            alt.Y("log1_m_s", title="speed by log 1 [m/s]", scale=alt.Scale(zero=False)),
-            alt.Color("run:N"),
-        )
-    )
+    _plot = Plot(Language("en"))
+    _x, _y = _plot.fit_x(means["second"]), _plot.fit_y(means["log1_m_s"])
+    _plot.add_axes(_x, _y, "time in the run [s]", "speed by log 1 [m/s]")
+    for _ink, (_, _run) in zip(INKS, means.group_by("run", maintain_order=True), strict=False):
+        _places = zip(map(_x, _run["second"]), map(_y, _run["log1_m_s"]), strict=True)
+        _plot.add_line(list(_places), _ink)
+    trace = mo.Html(_plot.to_svg("Speed in each run"))
     mo.vstack([mo.md(f"## 1. Samples\n\n{samples.height} of tow {tow['tow_id']}."), trace])
     return rate_hz, samples
 
@@ -81,14 +80,14 @@ def _(found, points):
     curve = found.curves.row(0, named=True)
     drawn = herijk.Curve.from_a_b(curve["a_kg_m"], curve["b_m_s"])
     speeds = [0.8 * curve["declared_speed_m_s"] + 0.01 * i for i in range(120)]
-    shape = pl.DataFrame({"speed_m_s": speeds, "cw_kg_m": drawn.cw_kg_m(speeds)})
-    axes = (
-        alt.X("speed_m_s", title="speed through water [m/s]", scale=alt.Scale(zero=False)),
-        alt.Y("cw_kg_m", title="Cw [kg/m]", scale=alt.Scale(zero=False)),
-    )
-    picture = alt.Chart(shape).mark_line().encode(*axes) + alt.Chart(points).mark_point().encode(
-        *axes
-    )
+    heights = list(drawn.cw_kg_m(speeds))
+    _plot = Plot(Language("en"))
+    _x, _y = _plot.fit_x(speeds), _plot.fit_y([*heights, *points["cw_kg_m"]])
+    _plot.add_axes(_x, _y, "speed through water [m/s]", "Cw [kg/m]")
+    _plot.add_line(list(zip(map(_x, speeds), map(_y, heights), strict=True)), INKS[0])
+    for _speed, _cw in points.select("speed_m_s", "cw_kg_m").drop_nulls().rows():
+        _plot.add_point(_x(_speed), _y(_cw), 1, f"{_cw:.2f} kg/m at {_speed:.2f} m/s")
+    picture = mo.Html(_plot.to_svg("The curve and the points of the runs"))
     b_text = "no B" if curve["b_m_s"] is None else f"B = {curve['b_m_s']:.2f} m/s"
     mo.vstack(
         [

@@ -3,7 +3,7 @@
 Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
 arguments, 130 stopped. What a command does is in `assets`, `warehouse` and `pipeline`.
 
-A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster take seconds
+A command imports what it needs when it runs: Polars, SciPy and Dagster take seconds
 together, and `herijk --help` needs none of them.
 """
 

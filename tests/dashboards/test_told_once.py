@@ -50,6 +50,7 @@ def get_words(block):
     text = " | ".join(block.rows[0]) if block.kind == "table" else block.text
     if block.kind == "terms":
         text = " | ".join(name for name, _ in block.rows)
+    text = re.sub(r"\+[0-9a-f]{12}\b", "", text)  # of the code
     return re.sub(r"[-+\u2212]?\d[\d.,:]*", "9", text)
 
 

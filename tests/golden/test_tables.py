@@ -13,9 +13,10 @@ import numpy as np
 import polars as pl
 import pytest
 
+from dashboards.page import render_page
 from dashboards.queries.results import Results
 from dashboards.reading import read_blocks
-from dashboards.site import list_pages, render_page
+from dashboards.site import list_pages
 from herijk.simulate import WorldSettings, world_settings
 from pipeline.assessment.tow_summary import summarize_tows
 from pipeline.blocks.tows import Tows

@@ -17,9 +17,10 @@ NEEDED = {
     "herijk.cli.main": set(),
     "herijk.cli.options": set(),
     "dashboards.terminal": set(),
-    "dashboards.queries.boats": HEAVY - WEB - {"dagster"},
+    "dashboards.queries.boats": HEAVY - WEB - {"dagster", READING},
     "pipeline.method.definition": set(),
     "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
+    "dashboards.queries.pages": HEAVY - WEB - {"dagster", READING},
     "warehouse.queries.types": HEAVY - WEB - {"dagster", READING},
     "warehouse.editions.compare": DECLARED | {"numpy", "polars", "scipy"},
     # Columns of later, which an old edition lacks, are read from their declaration.

@@ -21,7 +21,6 @@ from pipeline.register.replay import (
 from pipeline.tables.row import Row
 from pipeline.tables.schemas import TABLES
 from warehouse.editions.compare import compare
-from warehouse.editions.publish import drafted
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import make_unknown_edition_error
 from warehouse.store.editions import Edition, read_edition
@@ -83,6 +82,8 @@ def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
         raise make_unknown_edition_error(name, known)
     if not name.startswith(DRAFT):
         return read_edition(views.store, name)
+    from warehouse.editions.publish import drafted  # noqa: PLC0415 - all that makes an edition
+
     method = KnownMethods.from_store(views.store).get(name.removeprefix(DRAFT))
     return drafted(views.store, method, valid_from)
 

@@ -1,0 +1,46 @@
+"""A document as a page: what all pages share, and where they lie."""
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from dashboards.document import Document
+from dashboards.language import Language
+from pipeline.messages import LANGUAGES
+
+FOLDERS: Final = {"nl": "", "en": "en/"}
+"""Where the pages of each language lie within the site."""
+
+
+def render_page(
+    path: str,
+    template: str,
+    data: Mapping[str, Any],
+    language: str,
+    about: Mapping[str, str],
+    site: str = "",
+    other_page: str = "",
+) -> str:
+    """Return a page in one language.
+
+    Args:
+        path: where it lies within the pages of its language.
+        template: its name.
+        data: what its query found.
+        language: `nl` or `en`.
+        about: what is known about the database.
+        site: the way to the site, of a page that lies outside it.
+        other_page: the same page in the other language, of a page that lies outside the site.
+    """
+    other = next(tag for tag in LANGUAGES if tag != language)
+    root = site + FOLDERS[language] if site else "../" * path.count("/")
+    site_root = site or root + "../" * bool(FOLDERS[language])
+    document = Document(Language(language), root, data.get("chosen"))
+    frame = {
+        "path": path,
+        "site_root": site_root,
+        "other": other,
+        "other_page": other_page or f"{site_root}{FOLDERS[other]}{path}",
+        "simulated": about.get("simulated") == "true",
+        "code_version": about.get("code_version", ""),
+    }
+    return document.render(template, **data, **frame)
