@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from dashboards.reading import Block, read_blocks
+from pipeline.messages import tell
 
 MAX_PROSE_WIDTH: Final = 110
 """Largest number of characters on a line of prose."""
@@ -29,10 +30,17 @@ NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0[%sN])?|-")
 """A cell that is aligned to the right."""
 
 
-def to_text(html: str, *, folded: bool = False) -> str:
-    """Return a document as text; what is folded on its page only where that is asked for."""
-    is_terminal = sys.stdout.isatty()
-    width = shutil.get_terminal_size().columns if is_terminal else UNLIMITED_WIDTH
+def to_text(html: str, *, folded: bool = False, width: int | None = None) -> str:
+    """Return a document as text.
+
+    Args:
+        html: the document.
+        folded: whether to write what is folded on its page, too.
+        width: characters on a line; as many as the terminal has when left out.
+    """
+    if width is None:
+        is_terminal = sys.stdout.isatty()
+        width = shutil.get_terminal_size().columns if is_terminal else UNLIMITED_WIDTH
     parts = [_write(block, width) for block in read_blocks(html, folded=folded)]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(parts)).strip()
 
@@ -52,7 +60,7 @@ def _write(block: Block, width: int) -> str:
         for name, text in block.rows:
             lines += _wrap(f"{name}: {text}", prose_width, INDENT)
     elif block.kind == "table" and block.look != "steps":
-        lines = [_draw_table(block.rows, width), ""]
+        lines = [_draw_table(block, width), ""]
     elif block.kind == "columns":
         lines = [_write(one, width) for part in block.parts for one in part]
     return "\n".join(lines)
@@ -65,8 +73,36 @@ def _wrap(text: str, width: int, indent: str = "") -> list[str]:
     )
 
 
-def _draw_table(rows: list[list[str]], width: int) -> str:
-    """Return a table as lines, columns of numbers to the right."""
+def _draw_table(block: Block, width: int) -> str:
+    """Return a table as lines; where it is too wide, without the columns that a phone leaves out.
+
+    A line below it then names those. Numbers and words stay whole: what is still too wide is for
+    the terminal to wrap.
+    """
+    own_width = width - len(INDENT)
+    least = _measure_least_width(block.rows)
+    left_out = block.not_narrow if least > own_width else set()
+    rows = [[cell for place, cell in enumerate(row) if place not in left_out] for row in block.rows]
+    lines = _draw_rows(rows, max(own_width, _measure_least_width(rows)))
+    if left_out:
+        titles = ", ".join(block.rows[0][place] for place in sorted(left_out))
+        note = tell("Too wide for this terminal: {}. A file or a pager shows them.", titles)
+        lines += _wrap(f"{INDENT}{note}", width, INDENT)
+    return "\n".join(lines)
+
+
+def _measure_least_width(rows: list[list[str]]) -> int:
+    """Return the characters that a table needs where only words and numbers stay whole."""
+    columns = zip(*rows, strict=True)
+    return sum(1 + max(_measure_longest_word(cell) for cell in column) for column in columns)
+
+
+def _measure_longest_word(text: str) -> int:
+    return max(map(len, text.split(" ")), default=0)
+
+
+def _draw_rows(rows: list[list[str]], width: int) -> list[str]:
+    """Return a table as lines of at most this width, columns of numbers to the right."""
     titles, *body = rows
     table = Table(box=None, pad_edge=False, header_style="", collapse_padding=True)
     shown = [[cell or NOTHING for cell in row] for row in body]
@@ -78,10 +114,11 @@ def _draw_table(rows: list[list[str]], width: int) -> str:
             justify="right" if is_number else "left",
             vertical="bottom",
             overflow="fold",
+            min_width=max(map(_measure_longest_word, (title, *cells))),
         )
     for row in shown:
         table.add_row(*row)
-    return "\n".join(_print(table, width - len(INDENT)))
+    return list(_print(table, width))
 
 
 def _print(table: Table, width: int) -> Iterator[str]:
