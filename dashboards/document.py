@@ -53,7 +53,6 @@ _GLOBALS: Final = {
     "SIMULATED": words.SIMULATED,
     "FAILED_CHECKS": words.FAILED_CHECKS,
     "to_json": json.dumps,
-    "vars": vars,
 }
 """What every template can use besides the methods of its document and its language."""
 

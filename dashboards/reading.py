@@ -16,6 +16,9 @@ SKIPPED_TAGS: Final = ("head", "header", "form", "footer", "button", "summary", 
 SKIPPED_CLASSES: Final = ("links", "skip", "tools", "screen")
 """Classes of such parts."""
 
+NOT_NARROW: Final = "p"
+"""Class of cells that a phone does not show."""
+
 HEADING_LEVELS: Final = {"h1": 1, "h2": 2, "h3": 3, "h4": 4}
 TEXT_TAGS: Final = (*HEADING_LEVELS, "p", "aside", "figcaption", "li", "dt", "dd", "pre")
 """Elements that hold a text."""
@@ -44,6 +47,7 @@ class Block:
         about: what a statement is about: a boat and crew, a type, an edition.
         said: the kind of a statement and the code of its verdict.
         rows: of a table, the titles first; of terms, pairs of name and text.
+        not_narrow: of a table, places of the columns that a phone does not show.
         parts: of columns, the blocks of each.
     """
 
@@ -56,6 +60,7 @@ class Block:
     about: str = ""
     said: str = ""
     rows: list[list[str]] = field(default_factory=list)
+    not_narrow: set[int] = field(default_factory=set)
     parts: "list[list[Block]]" = field(default_factory=list)
 
 
@@ -179,7 +184,10 @@ class _Reader(HTMLParser):
         runs = _squeeze(runs)
         text = "".join(part for _, part in runs)
         if tag in CELL_TAGS:
-            self.blocks[-1].rows[-1].append(text)
+            row = self.blocks[-1].rows[-1]
+            if tag == "th" and NOT_NARROW in (self._attributes.get("class") or "").split():
+                self.blocks[-1].not_narrow.add(len(row))
+            row.append(text)
         elif tag == "dt":
             self.blocks[-1].rows.append([text, ""])
         elif tag == "dd":

@@ -4,7 +4,7 @@ import re
 import shutil
 import sys
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import Final, NamedTuple, Self
 
 from rich.console import Console
@@ -33,16 +33,17 @@ NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0[%sN])?|-")
 """A cell that is aligned to the right."""
 
 
-def to_text(html: str, *, folded: bool = False, wide: bool = False) -> str:
+def to_text(html: str, *, folded: bool = False, width: int | None = None) -> str:
     """Return a document as text.
 
     Args:
         html: the document.
-        folded: whether to show what is folded on its page.
-        wide: whether lines may be longer than the terminal is wide, as they are in a file.
+        folded: whether to write what is folded on its page, too.
+        width: characters on a line; as many as the terminal has when left out.
     """
-    is_terminal = sys.stdout.isatty() and not wide
-    width = shutil.get_terminal_size().columns if is_terminal else UNLIMITED_WIDTH
+    if width is None:
+        is_terminal = sys.stdout.isatty()
+        width = shutil.get_terminal_size().columns if is_terminal else UNLIMITED_WIDTH
     parts = [_write(block, width) for block in read_blocks(html, folded=folded)]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(parts)).strip()
 
@@ -62,10 +63,17 @@ def _write(block: Block, width: int) -> str:
         for name, text in block.rows:
             lines += _wrap(f"{name}: {text}", prose_width, INDENT)
     elif block.kind == "table" and block.look != "steps":
-        lines = [_draw_table(block.rows, width), ""]
+        lines = [_draw_table(block, width), ""]
     elif block.kind == "columns":
         lines = [_write(one, width) for part in block.parts for one in part]
     return "\n".join(lines)
+
+
+def _wrap(text: str, width: int, indent: str = "") -> list[str]:
+    """Return a text as lines; names of files and commands stay whole."""
+    return textwrap.wrap(
+        text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
 
 
 class Column(NamedTuple):
@@ -87,53 +95,49 @@ class Column(NamedTuple):
         return cls("\n".join(lines), cells, min_width)
 
 
-def _wrap(text: str, width: int, indent: str = "") -> list[str]:
-    """Return a text as lines; names of files and commands stay whole."""
-    return textwrap.wrap(
-        text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
-    )
-
-
-def _draw_table(rows: list[list[str]], width: int) -> str:
+def _draw_table(block: Block, width: int) -> str:
     """Return a table as lines, columns of numbers to the right.
 
-    Where not all columns fit, the last are left out, and named below the table.
+    Where not all columns fit, some are left out, and named below the table.
     """
-    titles, *body = rows
+    titles, *body = block.rows
     shown = [[cell or NOTHING for cell in row] for row in body]
     columns = [
         Column.from_cells(title, cells)
         for title, cells in zip(titles, zip(*shown, strict=True), strict=True)
     ]
+    own_width = width - len(INDENT)
+    fitting = _choose_columns([one.min_width for one in columns], block.not_narrow, own_width)
     table = Table(box=None, pad_edge=False, header_style="", collapse_padding=True)
-    fitting = columns[: _count_fitting(columns, width - len(INDENT))]
-    for column in fitting:
-        is_number = all(map(NUMBER.fullmatch, column.cells))
+    for place in fitting:
+        column = columns[place]
         table.add_column(
             column.title,
-            justify="right" if is_number else "left",
+            justify="right" if all(map(NUMBER.fullmatch, column.cells)) else "left",
             vertical="bottom",
             overflow="fold",
             min_width=column.min_width,
         )
     for row in shown:
-        table.add_row(*row[: len(fitting)])
-    lines = [*_print(table, width - len(INDENT))]
-    if len(fitting) < len(columns):
-        left_out = ", ".join(titles[len(fitting) :])
-        text = tell("Left out for want of room, see --wide: {}", left_out)
+        table.add_row(*(row[place] for place in fitting))
+    lines = [*_print(table, own_width)]
+    left_out = [title for place, title in enumerate(titles) if place not in fitting]
+    if left_out:
+        text = tell("Left out for want of room, see --wide: {}", ", ".join(left_out))
         lines += textwrap.wrap(text, width, initial_indent=INDENT, subsequent_indent=INDENT)
     return "\n".join(lines)
 
 
-def _count_fitting(columns: Sequence[Column], width: int) -> int:
-    """Return how many columns fit on a line, each with a blank between; at least one."""
-    used = -1
-    for place, column in enumerate(columns):
-        used += column.min_width + 1
-        if used > width:
-            return max(place, 1)
-    return len(columns)
+def _choose_columns(widths: Sequence[int], not_narrow: Collection[int], width: int) -> list[int]:
+    """Return the places of the columns that fit on a line, each with a blank between.
+
+    Left out are, from the last on, first those that a phone does not show, then others; one stays.
+    """
+    places = list(range(len(widths)))
+    candidates = sorted(places, key=lambda place: (place in not_narrow, place))
+    while len(places) > 1 and sum(widths[place] + 1 for place in places) - 1 > width:
+        places.remove(candidates.pop())
+    return places
 
 
 def _print(table: Table, width: int) -> Iterator[str]:

@@ -135,10 +135,10 @@ def show(
     if wants_json():
         click.echo(_to_json({name: shown[name] for name in fields}, html))
     else:
-        from dashboards.terminal import to_text
+        from dashboards.terminal import UNLIMITED_WIDTH, to_text
 
         is_wide = bool(click.get_current_context().meta.get(WIDE))
-        click.echo(to_text(html, folded=folded, wide=is_wide))
+        click.echo(to_text(html, folded=folded, width=UNLIMITED_WIDTH if is_wide else None))
 
 
 def _choose_rows(value: Any, chosen: Mapping[str, str]) -> Any:

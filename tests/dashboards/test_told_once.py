@@ -45,6 +45,16 @@ def test_a_terminal_says_every_statement_of_a_boats_page(results, language):
         assert [text for text in said if squeeze(text) not in in_terminal] == []
 
 
+def test_a_narrow_terminal_keeps_numbers_whole_and_names_what_it_leaves_out():
+    rows = [{"name": "Razende Snol", "cw_kg_m": 31.25, "weight_kg": 812.0, "note": "word " * 9}]
+    made = Document(Language("en")).table(rows, "name cw_kg_m | weight_kg note")
+    for width in (200, 24):
+        lines = to_text(made, width=width).splitlines()
+        assert any("31.25" in line for line in lines)
+        assert ("812" in "".join(lines)) == (width == 200)
+        assert any("Weight" in line for line in lines)
+
+
 def get_words(block):
     """The words of a block without its numbers; of a table its titles."""
     text = " | ".join(block.rows[0]) if block.kind == "table" else block.text
