@@ -64,7 +64,7 @@ def test_a_curve_does_not_depend_on_its_batch(monkeypatch):
     whole = curve.fit(points)
     monkeypatch.setattr(curve, "CHUNK_FITS", 10)
     in_chunks = curve.fit(points)
-    for i, single in enumerate(map(curve.Points.of, points.speed_m_s, points.cw_kg_m)):
+    for i, single in enumerate(map(curve.Points.from_arrays, points.speed_m_s, points.cw_kg_m)):
         alone = curve.fit(single)
         assert alone.a_kg_m[0] == whole.a_kg_m[i] == in_chunks.a_kg_m[i]
         assert alone.s_s2_m2[0] == whole.s_s2_m2[i] == in_chunks.s_s2_m2[i]

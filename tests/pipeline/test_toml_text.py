@@ -8,14 +8,11 @@ from pipeline.toml_text import parse_toml
 @pytest.mark.parametrize(
     "text",
     [
-        ".".join(["a"] * 100_000) + " = 1",
-        "[" + ".".join(["a"] * 100_000) + "]",
-        "a = {" + ".".join(["b"] * 100_000) + " = 1}",
         "a = " + "[" * 20_000 + "]" * 20_000,
         "a = " + "{a = " * 5_000 + "1" + "}" * 5_000,
         "# " + "x" * 2_000_000,
     ],
-    ids=["key", "header", "key in a table", "arrays", "tables", "length"],
+    ids=["arrays", "tables", "length"],
 )
 def test_what_is_too_deep_or_too_long_is_refused_at_once(text):
     with pytest.raises(ValueError, match=r"too deep|at most"):
