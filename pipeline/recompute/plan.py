@@ -56,7 +56,7 @@ class Plan:
         place: dict[tuple[int, bool], int] = {}
         for season, gps in sorted(set(of_tows), key=lambda one: (one[0], not one[1])):
             steps = method.get_steps(season)
-            own = steps if gps else find_tows_without_gps(steps)
+            own = steps if gps else leave_out_gps(steps)
             place[season, gps] = place_of_group.setdefault((steps, own), len(place_of_group))
         return cls(
             tows=known,
@@ -93,7 +93,7 @@ class Plan:
         return replace(self, steps=tuple(change(steps) for steps in self.steps))
 
 
-def find_tows_without_gps(steps: Steps) -> Steps:
+def leave_out_gps(steps: Steps) -> Steps:
     """Return the steps of a tow that has no GPS, where the method says what it then gets."""
     if not steps.estimates_without_gps:
         return steps
