@@ -87,7 +87,7 @@ test: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 3 --dist worksteal
 
 test-more: $(DEVELOP)
-	@$(BIN)/python -m pytest -n 3 --dist worksteal -m more
+	@$(BIN)/python -m pytest -n 3 --dist worksteal -m "more and not slow"
 
 slow: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -m slow
