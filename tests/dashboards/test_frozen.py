@@ -3,6 +3,7 @@
 import datetime as dt
 
 import duckdb
+import pytest
 
 from dashboards.document import Document
 from dashboards.language import Language
@@ -15,6 +16,8 @@ from dashboards.templates import get_template
 from pipeline.method.reading import read_shipped_method
 from warehouse.editions.publish import Terms, publish
 from warehouse.queries.views import Views
+
+pytestmark = pytest.mark.more
 
 EDITION, METHOD, DAY = "2014-1", "rebased", dt.date(2014, 6, 1)
 OF_TODAY = ("tow_speed_m_s", "speed_reason")

@@ -42,6 +42,7 @@ def new_tow(bench):
     return tow
 
 
+@pytest.mark.more
 def test_a_new_tow_has_the_number_of_the_next_rebuild_and_leaves_no_trace(bench, new_tow):
     before = hashes(bench.data)
     found = assess(bench.store, bench.archive, new_tow["tow_id"], read_shipped_method(METHOD))

@@ -61,6 +61,7 @@ def test_an_archive_in_which_all_samples_are_damaged_is_an_error(herijk, tmp_pat
 # One method
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("method", ["as-published-2014", "rebased"])
 def test_one_method_alone_gives_registers_and_a_site(method, herijk, tmp_path):
     bench = Workbench(tmp_path / "archive", tmp_path / "data")

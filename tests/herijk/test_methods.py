@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from assets.lake import Folders
 from pipeline.method.options import Steps
 from pipeline.method.reading import list_shipped_methods
@@ -43,6 +45,7 @@ def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeyp
     assert "wind.side" in herijk("compare", "concept-rebased-2015", "ours.toml", *data)[1]
 
 
+@pytest.mark.more
 def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
     file = tmp_path / "ours.toml"
     file.write_text('name = "ours"\ntitle = "Onze"\nextends = "rebased-2015"\n', encoding="utf-8")
@@ -58,6 +61,7 @@ def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
     assert herijk("verify", "--data", bench.data)[0] == 0
 
 
+@pytest.mark.more
 def test_a_method_goes_by_a_list_without_it_and_the_report_says_so(herijk, bench):
     folders = ("--archive", bench.archive, "--data", bench.data)
     (bench.data / "beheer.toml").write_text(f'methods = ["{METHODS[1]}"]', encoding="utf-8")

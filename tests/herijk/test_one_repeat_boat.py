@@ -14,6 +14,8 @@ from tests.tables import fill_database
 from tests.warehouse.edition_bench import EditionBench
 from warehouse.queries.assess import assess
 
+pytestmark = pytest.mark.more
+
 SETTINGS = WorldSettings(
     seasons=(2011, 2012, 2014, 2015, 2016, 2017),
     tows_per_season=6,

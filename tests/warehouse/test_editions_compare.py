@@ -21,6 +21,8 @@ from warehouse.editions.publish import publish_printed
 from warehouse.store.decisions import FILE_NAME
 from warehouse.store.editions import read_edition
 
+pytestmark = pytest.mark.more
+
 VARIANT = """
 name = "variant"
 title = "proef"

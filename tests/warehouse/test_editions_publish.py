@@ -270,6 +270,7 @@ def test_a_printed_register_with_a_line_that_cannot_be_read_is_not_published(wit
     assert not folder(with_printed, "gedrukt-2012").exists()
 
 
+@pytest.mark.more
 def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(with_printed):
     publish_register_of(with_printed)
     corrected = read_shipped_method("corrected-2013")
@@ -317,6 +318,7 @@ def with_newer_print(bench):
     return tow
 
 
+@pytest.mark.more
 def test_a_line_whose_newest_tow_has_no_samples_is_named(bench_of_editions):
     tow = with_newer_print(bench_of_editions)
     bench_of_editions.publish("x", "rebased")
@@ -330,6 +332,7 @@ def test_a_line_whose_newest_tow_has_no_samples_is_named(bench_of_editions):
     assert verify(bench_of_editions.store, afresh=False).findings == []
 
 
+@pytest.mark.more
 def test_carried_the_newer_printed_line_counts_instead_of_the_older_tow(bench_of_editions):
     tow = with_newer_print(bench_of_editions)
     bench_of_editions.publish("x", "rebased", carry="gedrukt-2012")
@@ -339,6 +342,7 @@ def test_carried_the_newer_printed_line_counts_instead_of_the_older_tow(bench_of
     assert verify(bench_of_editions.store, afresh=False).findings == []
 
 
+@pytest.mark.more
 def test_an_excluded_tow_does_not_come_back_from_print(bench_of_editions):
     bench = bench_of_editions
     tow = with_newer_print(bench)

@@ -182,6 +182,7 @@ def test_samples_of_another_boat_are_found_also_when_written_otherwise(archive):
     assert found == dict.fromkeys((taken, other), "samples_listed_twice")
 
 
+@pytest.mark.more
 def test_a_zero_that_is_off_is_doubted_shared_with_nobody_and_not_published(archive):
     sound = archive.curves()
     tow = "2017-002"
