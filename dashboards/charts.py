@@ -128,15 +128,7 @@ def draw_seasons(language: Language, rows: pl.DataFrame, caption: str) -> Markup
     plot = Plot(language, 480, height, SEASON_LABEL_PX, 30, legend)
     ratios = [row[name] for row in known for name in ("lowest_ratio", "highest_ratio")]
     x = plot.fit_x([100.0 * (ratio - 1.0) for ratio in ratios], including=[0.0])
-    for tick in x.ticks:
-        grid = f"M{x(tick):.1f} {plot.top}V{plot.bottom}"
-        is_zero = abs(tick) < x.step / 2
-        plot.add_path(grid, GREY, style={"stroke-opacity": None if is_zero else 0.25})
-        sign = "" if is_zero else "+"
-        label = language.write_number(tick, x.decimals, sign)
-        plot.add_text(x(tick), plot.bottom + 16, label, "middle")
-    axis = language.say(say("Cw by the method / Cw as published [%]"))
-    plot.add_text((plot.left + plot.right) / 2, plot.height - 6, axis, "middle")
+    plot.add_grid(x, language.say(say("Cw by the method / Cw as published [%]")), signed=True)
     top = float(plot.top)
     for era in eras:
         plot.add_text(4, top + 16, language.say(era.measured), size=11)
@@ -305,12 +297,7 @@ def draw_number(language: Language, line: Row, caption: str) -> Markup:
     n_rows = len(shown) + bool(line["peers"])
     plot = Plot(language, 380, NUMBER_ROW_PX * n_rows + 50, NUMBER_LABEL_PX, 8)
     x = plot.fit_x([*old, *new, *line["peers"]])
-    for tick in x.ticks:
-        plot.add_path(
-            f"M{x(tick):.1f} {plot.top}V{plot.bottom}", GREY, style={"stroke-opacity": 0.25}
-        )
-        plot.add_text(x(tick), plot.bottom + 16, language.write_number(tick, x.decimals), "middle")
-    plot.add_text((plot.left + plot.right) / 2, plot.height - 6, "Cw [kg/m]", "middle")
+    plot.add_grid(x, "Cw [kg/m]")
     for place, (name, (cw, low, high), is_complete) in enumerate(shown):
         y = plot.top + (place + 0.5) * NUMBER_ROW_PX
         plot.add_text(plot.left - 8, y + 4, language.say(name), "end")
@@ -350,13 +337,7 @@ def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
     plot = Plot(language, 480, GAIN_ROW_PX * rows.height + 70, GAIN_LABEL_PX, 16)
     ends = [*rows["gain_in_two_hours_s"], 0.0]
     x = fit_scale(ends, plot.left + 36, plot.right - 36)
-    for tick in x.ticks:
-        is_zero = abs(tick) < x.step / 2
-        style = {"stroke-opacity": None if is_zero else 0.25}
-        plot.add_path(f"M{x(tick):.1f} {plot.top}V{plot.bottom}", GREY, style=style)
-        label = language.write_number(tick, x.decimals, "" if is_zero else "+")
-        plot.add_text(x(tick), plot.bottom + 16, label, "middle")
-    plot.add_text((plot.left + plot.right) / 2, plot.height - 6, language.say(SECONDS), "middle")
+    plot.add_grid(x, language.say(SECONDS), signed=True)
     for place, row in enumerate(rows.to_dicts()):
         gain = row["gain_in_two_hours_s"]
         y = plot.top + (place + 0.5) * GAIN_ROW_PX

@@ -219,6 +219,24 @@ class Plot:
         self.add_text(4, self.top - 12, y_title)
         self.add_text((self.left + self.right) / 2, self.height - 6, x_title, "middle")
 
+    def add_grid(self, x: Scale, title: str, *, signed: bool = False) -> None:
+        """Add lines across for rows of marks, numbers below them and a title.
+
+        Args:
+            x: the scale along the bottom.
+            title: of the scale.
+            signed: whether numbers have a plus, and the line at zero stands out.
+        """
+        for tick in x.ticks:
+            is_zero = abs(tick) < x.step / 2
+            opacity = None if signed and is_zero else 0.25
+            line = f"M{x(tick):.1f} {self.top}V{self.bottom}"
+            self.add_path(line, GREY, style={"stroke-opacity": opacity})
+            sign = "+" if signed and not is_zero else ""
+            label = self.language.write_number(tick, x.decimals, sign)
+            self.add_text(x(tick), self.bottom + 16, label, "middle")
+        self.add_text((self.left + self.right) / 2, self.height - 6, title, "middle")
+
     def add_point(
         self, x: float, y: float, kind: int, tip: str = "", *, filled: bool = True, page: str = ""
     ) -> None:

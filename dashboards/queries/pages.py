@@ -40,15 +40,17 @@ def read_start(results: Results) -> Data:
     views, season = results.views, pl.col("season")
     editions = views.table("editions").sort("valid_from")
     seasons = views.table("seasons").select(first=season.min(), last=season.max())
+    lines = results.line_changes.filter(to_edition=results.edition)
+    years = summarise_years(results.rows("register_years"), views.store.read("printed_registers"))
     return {
         "in_force": editions.row(-1, named=True) if editions.height else None,
         "as_of": views.table("due_list")["as_of"].max(),
         "n_boats": views.table("boats").height,
         "n_tows": views.table("tows").height,
         "seasons": seasons.row(0, named=True),
-        "changed": sum_up_changes(results.line_changes.filter(to_edition=results.edition)),
-        "vote": sum_up_gains(results.line_changes.filter(to_edition=results.edition)),
-        "then": read_years(results)["most_changed"],
+        "changed": sum_up_changes(lines),
+        "vote": sum_up_gains(lines),
+        "then": find_most_changed(years.filter(method=results.method), "year"),
         "rebuilt": last_changes(views.store),
         **read_season_changes(results),
     }
@@ -117,11 +119,20 @@ def sum_up_changes(lines: pl.DataFrame) -> Data:
 def read_season_changes(results: Results) -> Data:
     """Return what each method makes of each season, and where the one shown first changes most."""
     changes = results.rows("season_changes")
-    own = changes.filter(method=results.method).drop_nulls("median_ratio")
+    own = changes.filter(method=results.method)
+    return {"season_changes": changes, "most_changed": find_most_changed(own, "season")}
+
+
+def find_most_changed(rows: pl.DataFrame, by: str) -> Row | None:
+    """Return the row whose `median_ratio` is farthest from 1, of equals the first; None if none is.
+
+    Args:
+        rows: with `median_ratio`.
+        by: the column that orders them.
+    """
     size = pl.col("median_ratio").log().abs()
-    by_size = own.sort(size, "season", descending=[True, False])
-    most_changed = by_size.row(0, named=True) if by_size.height else None
-    return {"season_changes": changes, "most_changed": most_changed}
+    by_size = rows.drop_nulls("median_ratio").sort(size, by, descending=[True, False])
+    return by_size.row(0, named=True) if by_size.height else None
 
 
 # -- Registers --------------------------------------------------------------------------------
@@ -207,10 +218,7 @@ def read_years(results: Results, method: str | None = None) -> Data:
     if method is not None and lines.filter(method=method).is_empty():
         raise MissingKnowledgeError("method {} was not applied by the last rebuild", method)
     years = summarise_years(lines, views.store.read("printed_registers"))
-    own = years.filter(method=chosen)
-    size = pl.col("median_ratio").log().abs()
-    by_size = own.drop_nulls("median_ratio").sort(size, "year", descending=[True, False])
-    most_changed = by_size.row(0, named=True) if by_size.height else None
+    most_changed = find_most_changed(years.filter(method=chosen), "year")
     causes = [
         {"year": year, "method": name, "main_cause": pick_cause(cause)} | cause
         for (year, name), rows in lines.group_by("year", "method", maintain_order=True)
@@ -333,10 +341,11 @@ def read_changes(results: Results, edition: str | None = None) -> Data:
     changed = results.line_changes.filter(pl.col("change") != "same")
     names = changed["to_edition"].unique().sort().to_list()
     chosen = edition or (results.edition if results.edition in names or not names else names[-1])
+    own = results.line_changes.filter(to_edition=chosen)
     return {
         "lines": changed,
-        "changed": sum_up_changes(results.line_changes.filter(to_edition=chosen)),
-        "vote": sum_up_gains(results.line_changes.filter(to_edition=chosen)),
+        "changed": sum_up_changes(own),
+        "vote": sum_up_gains(own),
         "names": names,
         "races": results.views.race_days(),
         "chosen": {"to_edition": chosen},
