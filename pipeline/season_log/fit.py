@@ -213,12 +213,13 @@ def fit_model(
         mode[start.active] = start.value
         ln_variance, share = start.ln_variance, start.share
     value = mode[active]
+    unchanged = [group.leave_out_patterns() for group in model.groups]
     damping = np.ones(len(ln_variance))
     last_step = np.zeros(len(ln_variance))
     for iteration in range(MAX_ITERATIONS):
         is_warming_up = start is None and iteration < ITERATIONS_WITHOUT_PATTERNS
-        pattern_share = share if with_patterns and not is_warming_up else None
-        linear, boats = _judge_all_patterns(model, active, value, ln_variance, pattern_share)
+        groups = model.groups if with_patterns and not is_warming_up else unchanged
+        linear, boats = _judge_all_patterns(model, groups, active, value, ln_variance, share)
         value_step, covariance = _step_effects_by_gls(model, active, value, boats)
         ln_variance_step = _step_variances_by_reml(model, ln_variance, covariance, boats)
         logit_step = _step_shares_by_em(model, share, boats)
@@ -246,10 +247,11 @@ def fit_model(
 
 def _judge_all_patterns(
     model: Model,
+    groups: list[BoatGroup],
     active: IntArray,
     value: FloatArray,
     ln_variance: FloatArray,
-    share: FloatArray | None,
+    share: FloatArray,
 ) -> tuple[Linearization, list[GroupPosterior]]:
     """Return the forward model and the posterior of the patterns of every boat."""
     archive, effects = model.archive, model.effects
@@ -261,7 +263,7 @@ def _judge_all_patterns(
     variance = np.exp(ln_variance)
     boats = [
         judge_patterns(group, archive, linear, design, residual, variance, share, model.priors)
-        for group in model.groups
+        for group in groups
     ]
     return linear, boats
 
@@ -318,9 +320,10 @@ def _step_shares_by_em(model: Model, share: FloatArray, boats: list[GroupPosteri
     possible = np.array([p.altered_prior_gaps, p.askew_prior_tows])
     expected = possible * [p.altered_share, p.askew_share]
     missing = np.zeros((2, 2))
+    for group in model.groups:
+        possible += (group.is_possible @ group.pattern_kind).sum(axis=0)
     for b in boats:
         of_boat = b.probability @ b.group.pattern_kind
-        possible += (b.group.is_possible @ b.group.pattern_kind).sum(axis=0)
         expected += of_boat.sum(axis=0)
         missing += np.diag(of_boat.sum(axis=0)) - of_boat.T @ of_boat
     new_share = expected / possible

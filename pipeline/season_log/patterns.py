@@ -12,7 +12,7 @@ pattern adds.
 A boat with T tows has 2 T patterns and 3 T numbers, so that all patterns can be enumerated.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -52,6 +52,15 @@ class BoatGroup:
         """Whether a pattern is an alteration, and whether it is a tow askew, (p, 2)."""
         kinds = np.stack([self.is_after.any(axis=1), self.is_askew.any(axis=1)], axis=1)
         return kinds.astype(np.float64)
+
+    def leave_out_patterns(self) -> "BoatGroup":
+        """Return the boats with pattern 0 alone: nothing happened to any of them."""
+        return replace(
+            self,
+            is_after=self.is_after[:1],
+            is_askew=self.is_askew[:1],
+            is_possible=self.is_possible[:, :1],
+        )
 
 
 def group_boats(archive: Archive, priors: Priors) -> list[BoatGroup]:
@@ -217,7 +226,7 @@ def judge_patterns(
     design: FloatArray,
     residual: FloatArray,
     variance: FloatArray,
-    share: FloatArray | None,
+    share: FloatArray,
     priors: Priors,
 ) -> GroupPosterior:
     """Return the posterior of every pattern of the boats of a group (the E-step of EM).
@@ -226,8 +235,7 @@ def judge_patterns(
         design: (n, 3, k) of all tows.
         residual: (n, 3) observed less predicted numbers of all tows.
         variance: (v,) variance components, as in `compute_variance_parts`.
-        share: (2,) of gaps with an unreported alteration, and of early tows pulled askew; None
-            where nothing can have happened to a boat.
+        share: (2,) of gaps with an unreported alteration, and of early tows pulled askew.
     """
     boats, tows = group.tow.shape
     own = np.repeat(residual[group.tow][:, None], len(group.is_askew), axis=1)
@@ -247,8 +255,7 @@ def judge_patterns(
     weighted_residual = own @ inverse - (inverse_a @ (gain @ own[..., None]))[..., 0]
     ln_density = -0.5 * ((own * weighted_residual).sum(axis=2) + ln_determinant)
 
-    ln_odds = np.full(2, -np.inf) if share is None else scipy.special.logit(share)
-    ln_prior = np.where(group.pattern_kind > 0.0, ln_odds, 0.0).sum(axis=1)
+    ln_prior = group.pattern_kind @ scipy.special.logit(share)
     ln_prior = np.where(group.is_possible, ln_prior, -np.inf)
     return GroupPosterior(
         group=group,
