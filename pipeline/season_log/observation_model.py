@@ -189,8 +189,10 @@ class Effects:
 
     def design(self, linear: Linearization, chosen: IntArray) -> FloatArray:
         """Return the design matrix: derivatives of the numbers by some effects, (n, 3, chosen)."""
-        derivative = np.stack([linear.by_channel[c] for c in self.channel[chosen]], axis=2)
-        return np.asarray(derivative * self.covariate[:, None, chosen])
+        channels = list(linear.by_channel)
+        by_channel = np.stack(list(linear.by_channel.values()), axis=2)
+        place = [channels.index(channel) for channel in self.channel[chosen]]
+        return np.asarray(by_channel[:, :, place] * self.covariate[:, None, chosen])
 
 
 def list_effects(archive: Archive, priors: Priors) -> Effects:
@@ -213,9 +215,10 @@ def _list_permanent_effects(archive: Archive, priors: Priors) -> Iterator[Effect
         if log["has_gps"]:
             yield Effect(GPS_SCALE, *key, own, priors.gps_season_sd)
     is_unrecorded = ~archive.frame["temperature_known"].to_numpy()
+    recorded_force_sd = archive.column("force_sd")
     for year in _list_seasons(archive):
         in_season = archive.season == year
-        records = archive.frame.filter(season=year)["force_sd"].drop_nulls().to_numpy()
+        records = recorded_force_sd[in_season & np.isfinite(recorded_force_sd)]
         force_sd = float(np.median(records)) if len(records) else priors.force_sd
         yield Effect(FORCE, year, 0, in_season.astype(np.float64), force_sd)
         if (in_season & is_unrecorded).any():
