@@ -8,8 +8,9 @@ iteration makes four steps together; they are repeated until nothing moves:
 2. effects u: Newton step with the observed information,
    u += C (X'P r - (u - mean) / prior variance),  C = (X'P X - missing + 1 / prior variance)^-1;
 3. variances: Fisher scoring of the restricted likelihood on the logarithms,
-   gradient_j = 1/2 tr[B_j (P r r'P - P + P X C X'P)],  information_ij = 1/2 tr(P B_i P B_j),
-   with B_j the derivative of the covariance by ln variance j, and a normal prior on each;
+   gradient_j = 1/2 tr[Z_j' (P r r'P - P + P X C X'P) Z_j],  information_ij = 1/2 |Z_i' P Z_j|^2,
+   with Z_j Z_j' what ln variance j adds to the covariance, which is also its derivative, and a
+   normal prior on each;
 4. shares of altered gaps and askew tows: EM, accelerated by the missing information.
 
 P is the inverse covariance of the numbers, averaged over patterns. Sources: Patterson & Thompson
@@ -298,10 +299,13 @@ def _step_variances_by_reml(
         squared_residual = np.swapaxes(weighted, 1, 2) @ b.weighted_residual
         by_effects = b.precision_design @ covariance @ np.swapaxes(b.precision_design, 1, 2)
         excess = squared_residual - b.mean_precision + by_effects
-        gradient += 0.5 * np.tensordot(b.parts, excess, axes=3)
-        precision_part = b.mean_precision @ b.parts
-        transposed = np.swapaxes(precision_part, 2, 3)
-        information += 0.5 * precision_part.reshape(v, -1) @ transposed.reshape(v, -1).T
+        n_boats, numbers, _, tows = b.random_design.shape
+        z = b.random_design.reshape(n_boats, numbers, v * tows)
+        own_excess = (z * (excess @ z)).sum(axis=(0, 1))  # diagonal of Z' excess Z
+        gradient += 0.5 * own_excess.reshape(v, tows).sum(axis=1)
+        shared_precision = np.swapaxes(z, 1, 2) @ (b.mean_precision @ z)  # Z' P Z
+        square = (shared_precision**2).sum(axis=0).reshape(v, tows, v, tows)
+        information += 0.5 * square.sum(axis=(1, 3))
     prior_precision = model.priors.ln_variance_sd**-2.0
     # A variance that shrinks takes its own gradient with it: that curves the density of its ln.
     information += np.diag(prior_precision + np.maximum(-gradient, 0.0))
