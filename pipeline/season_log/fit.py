@@ -9,12 +9,14 @@ iteration makes four steps together; they are repeated until nothing moves:
    u += C (X'P r - (u - mean) / prior variance),  C = (X'P X - missing + 1 / prior variance)^-1;
 3. variances: Fisher scoring of the restricted likelihood on the logarithms,
    gradient_j = 1/2 tr[Z_j' (P r r'P - P + P X C X'P) Z_j],  information_ij = 1/2 |Z_i' P Z_j|^2,
-   with Z_j Z_j' what ln variance j adds to the covariance, which is also its derivative, and a
-   normal prior on each;
+   with Z_j Z_j' what ln variance j adds to the covariance, which is also its derivative; and a
+   half-Cauchy prior on the standard deviation: with w = variance / scale^2, gradient
+   1/2 - w / (1 + w) and information w / (1 + w)^2;
 4. shares of altered gaps and askew tows: EM, accelerated by the missing information.
 
 P is the inverse covariance of the numbers, averaged over patterns. Sources: Patterson & Thompson
-1971 (REML); Dempster, Laird & Rubin 1977 (EM); Louis 1982 (information of mixtures).
+1971 (REML); Dempster, Laird & Rubin 1977 (EM); Louis 1982 (information of mixtures); Gelman 2006
+(half-Cauchy prior).
 """
 
 from dataclasses import dataclass, replace
@@ -70,8 +72,8 @@ class Model:
         return linearize(a.usual_bend, a.force_n, ln_factor, a.reference_ln)
 
     @property
-    def prior_ln_variance(self) -> FloatArray:
-        """Prior means of the ln variances, in the order of `list_variance_names`."""
+    def ln_variance_scale(self) -> FloatArray:
+        """Ln of the squared prior scale of each variance, in the order of `list_variance_names`."""
         p = self.priors
         log_sd = [p.tow_log_sd] * len(p.era_starts)
         of_numbers = [p.tow_sd, p.tow_bend_sd, p.tow_gps_sd]
@@ -208,7 +210,7 @@ def fit_model(
     """
     priors = model.priors
     mode = model.effects.mean.copy()
-    ln_variance = model.prior_ln_variance
+    ln_variance = model.ln_variance_scale
     share = np.array([priors.altered_share, priors.askew_share])
     if start is not None:
         mode[start.active] = start.value
@@ -306,10 +308,10 @@ def _step_variances_by_reml(
         shared_precision = np.swapaxes(z, 1, 2) @ (b.mean_precision @ z)  # Z' P Z
         square = (shared_precision**2).sum(axis=0).reshape(v, tows, v, tows)
         information += 0.5 * square.sum(axis=(1, 3))
-    prior_precision = model.priors.ln_variance_sd**-2.0
+    ratio = np.exp(ln_variance - model.ln_variance_scale)
     # A variance that shrinks takes its own gradient with it: that curves the density of its ln.
-    information += np.diag(prior_precision + np.maximum(-gradient, 0.0))
-    gradient -= prior_precision * (ln_variance - model.prior_ln_variance)
+    information += np.diag(ratio / (1.0 + ratio) ** 2 + np.maximum(-gradient, 0.0))
+    gradient += 0.5 - ratio / (1.0 + ratio)
     step = np.linalg.solve(information, gradient)
     return np.asarray(np.clip(step, -MAX_LN_VARIANCE_STEP, MAX_LN_VARIANCE_STEP))
 
