@@ -295,7 +295,7 @@ def find_best_windows(
         is_allowed = (span_sum(usable, size) == size) & (speed_excess <= 1.0)
         score = np.where(is_allowed, np.round(score, SCORE_DECIMALS), -np.inf)
         start = score.argmax(axis=1)
-        highest = np.take_along_axis(score, start[:, None], 1)[:, 0]
+        highest = score.max(axis=1)
         is_better = highest > best_score
         best_start = np.where(is_better, start, best_start)
         best_length = np.where(is_better, size, best_length)
@@ -339,22 +339,19 @@ def measure_ramp(speed: FloatArray, is_present: BoolArray) -> IntArray:
     """
     count = np.maximum(is_present.sum(axis=1), 1)
     mean = np.where(is_present, speed, 0.0).sum(axis=1) / count
-    beginning = is_present[:, :MAX_RAMP_S]
-    centred = np.where(beginning, speed[:, :MAX_RAMP_S] - mean[:, None], 0.0)
+    beginning = is_present[:, :MAX_RAMP_S].astype(np.float64)
+    centred = beginning * (speed[:, :MAX_RAMP_S] - mean[:, None])
+    lengths = np.arange(1, MAX_RAMP_S + 1)
     second = np.arange(beginning.shape[1])
-    best_gain, best_length, best_span = np.zeros((3, len(speed)))
-    for p in range(1, MAX_RAMP_S + 1):
-        line = np.where(beginning, np.clip(p - second, 0, None), 0.0)
-        norm = (line**2).sum(axis=1) - line.sum(axis=1) ** 2 / count
-        norm = np.maximum(norm, 1e-12)
-        product = (line * centred).sum(axis=1)
-        gain = product**2 / norm
-        is_better = gain > best_gain
-        best_gain = np.where(is_better, gain, best_gain)
-        best_length = np.where(is_better, p, best_length)
-        best_span = np.where(is_better, np.abs(product) / norm * p, best_span)
-    is_ramp = best_span >= MIN_RAMP_M_S
-    return np.where(is_ramp, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
+    lines = np.clip(lengths - second[:, None], 0, None)  # (seconds, lengths)
+
+    product = centred @ lines
+    norm = beginning @ lines**2 - (beginning @ lines) ** 2 / count[:, None]
+    norm = np.maximum(norm, 1e-12)
+    best = (product**2 / norm).argmax(axis=1)
+    run = np.arange(len(speed))
+    span = np.abs(product[run, best]) / norm[run, best] * lengths[best]
+    return np.where(span >= MIN_RAMP_M_S, lengths[best] + RAMP_MARGIN_S, 0)
 
 
 def measure_wind_change(blocks: RunBlocks) -> FloatArray:
@@ -393,8 +390,11 @@ def widen(values: FloatArray) -> FloatArray:
 
 
 def running_sum(values: FloatArray) -> FloatArray:
-    """Return sums of each row up to every place, beginning with 0: one column more."""
-    return np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
+    """Return sums of each row up to every place, beginning with 0: one column more.
+
+    They are stored by column, so that the differences over spans of a size are quick.
+    """
+    return np.asfortranarray(np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0))))
 
 
 def span_sum(running: FloatArray, size: int) -> FloatArray:
