@@ -51,10 +51,10 @@ ITERATIONS_WITHOUT_PATTERNS: Final = 4
 MAX_MISSING_INFORMATION: Final = 0.9
 """Share of the information on a pattern share beyond which EM is not accelerated further."""
 MAX_LN_VARIANCE_STEP: Final = 1.0
-MAX_TURN_BACK_RATIO: Final = 0.5
-"""Share of the last step of a ln variance that the next may go back. Where one boat was towed
-twice, the patterns move with the variance, which curves its density more than the expected
-information says: full steps then go to and fro for ever, so they are halved."""
+GAIN_LIMIT: Final = 0.5
+"""Share of the last step of a ln variance beyond which the next step has twice the gain, or half of
+it where it goes back. The patterns move with a variance, so that its density is flatter or more
+curved than the expected information says: full steps would creep, or go to and fro for ever."""
 
 
 @dataclass(frozen=True)
@@ -217,7 +217,7 @@ def fit_model(
         ln_variance, share = start.ln_variance, start.share
     value = mode[active]
     unchanged = [group.leave_out_patterns() for group in model.groups]
-    damping = np.ones(len(ln_variance))
+    gain = np.ones(len(ln_variance))
     last_step = np.zeros(len(ln_variance))
     for iteration in range(MAX_ITERATIONS):
         is_warming_up = start is None and iteration < ITERATIONS_WITHOUT_PATTERNS
@@ -239,11 +239,10 @@ def fit_model(
         steps = np.concatenate([value_step, ln_variance_step, logit_step])
         if np.abs(steps).max() < tolerance and not is_warming_up:
             return fit
-        turns_back = ln_variance_step * last_step < -MAX_TURN_BACK_RATIO * last_step**2
-        damping = np.where(turns_back, 0.5 * damping, damping)
+        gain = _adapt_gain(gain, ln_variance_step, last_step)
         last_step = ln_variance_step
         value = value + value_step
-        ln_variance = ln_variance + damping * ln_variance_step
+        ln_variance = ln_variance + _limit_step(gain * ln_variance_step)
         share = scipy.special.expit(scipy.special.logit(share) + logit_step)
     return replace(fit, has_converged=False)
 
@@ -312,8 +311,21 @@ def _step_variances_by_reml(
     # A variance that shrinks takes its own gradient with it: that curves the density of its ln.
     information += np.diag(ratio / (1.0 + ratio) ** 2 + np.maximum(-gradient, 0.0))
     gradient += 0.5 - ratio / (1.0 + ratio)
-    step = np.linalg.solve(information, gradient)
+    step: FloatArray = np.linalg.solve(information, gradient).astype(np.float64)
+    return _limit_step(step)
+
+
+def _limit_step(step: FloatArray) -> FloatArray:
+    """Return a step of ln variances that nowhere exceeds `MAX_LN_VARIANCE_STEP`, (v,)."""
     return np.asarray(np.clip(step, -MAX_LN_VARIANCE_STEP, MAX_LN_VARIANCE_STEP))
+
+
+def _adapt_gain(gain: FloatArray, step: FloatArray, last_step: FloatArray) -> FloatArray:
+    """Return by how much the step of each ln variance is multiplied (Jacobs 1988), (v,)."""
+    limit = GAIN_LIMIT * last_step**2
+    goes_on = step * last_step > limit
+    turns_back = step * last_step < -limit
+    return gain * np.where(goes_on, 2.0, np.where(turns_back, 0.5, 1.0))
 
 
 def _step_shares_by_em(model: Model, share: FloatArray, boats: list[GroupPosterior]) -> FloatArray:

@@ -20,7 +20,9 @@ PERFECT = replace(
     CLEAN, tow_noise=0.0, run_noise=1e-6, gps_run_error=0.0, gps_season_error=0.0, kappa_error=0.0
 )
 WORLDS = 4
-PHANTOM = Path(__file__).parents[1] / "data" / "phantom_tows.parquet"
+DATA = Path(__file__).parents[1] / "data"
+PHANTOM = DATA / "phantom_tows.parquet"
+CREEPING = DATA / "creeping_tows.parquet"
 IN_2010 = pl.col("season") == 2010
 FORCE_OF_2018 = (pl.col("season") == 2018) & (pl.col("instrument") == "force_scale")
 
@@ -173,6 +175,13 @@ RESTLESS = {
 @pytest.mark.parametrize(("setup", "seed"), RESTLESS.values(), ids=RESTLESS)
 def test_the_search_comes_to_rest(setup, seed):
     assert "not settled" not in set(estimated(setup, seed)[1].diagnosis["verdict"])
+
+
+def test_a_fit_that_creeps_comes_to_rest():
+    """The share of altered boats and the scatter of the logs moved each other by a fortieth."""
+    found = estimate_season_factors(pl.read_parquet(CREEPING))
+    assert "not settled" not in set(found.diagnosis["verdict"])
+    assert found.diagnosis.filter("alarm").is_empty()
 
 
 @pytest.mark.parametrize(
