@@ -71,7 +71,7 @@ def read_boat(
     tows = dict(curves.select("tow_id", "tow").rows())
     crews = read_answers(results, chosen_edition).get(fsn_no, []) if tows else []
     size = pl.col("cw_effect_ratio").log().abs()
-    budget = own("uncertainty_budget").filter(pl.col("u_ratio") > 0)
+    budget = own("uncertainty_budget").filter(pl.col("u_ratio") >= NEGLIGIBLE_CHANGE)
     return {
         "methods": [name for name in shown if name in curves["method"].unique()],
         "boat": boat,
