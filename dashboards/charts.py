@@ -349,12 +349,16 @@ def draw_number(language: Language, line: Row, caption: str) -> Markup:
 GAIN_ROW_PX: Final = 18
 GAIN_LABEL_PX: Final = 176
 """Room for the name of a crew."""
+MAX_BARS: Final = 45
+"""Crews in one picture: as many as can be read on a page of paper."""
 WITHIN_OPACITY: Final = 0.45
 """How a change within its uncertainty is drawn."""
 
 
 def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
     """Return a bar for every crew: what a race of two hours at equal power gains or loses.
+
+    More crews than a page of paper has room for take several pictures, on one scale.
 
     Args:
         language: of what is written.
@@ -363,25 +367,30 @@ def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
     """
     known = lines.drop_nulls("gain_in_two_hours_s")
     rows = known.sort("gain_in_two_hours_s", "fsn_no", descending=[True, False])
-    if rows.is_empty():
-        return Markup()
-    plot = Plot(language, 480, GAIN_ROW_PX * rows.height + 70, GAIN_LABEL_PX, 16)
-    ends = [*rows["gain_in_two_hours_s"], 0.0]
-    x = fit_scale(ends, plot.left + 36, plot.right - 36)
-    plot.add_grid(x, language.say(SECONDS), signed=True)
-    for place, row in enumerate(rows.to_dicts()):
-        gain = row["gain_in_two_hours_s"]
-        y = plot.top + (place + 0.5) * GAIN_ROW_PX
-        crew = f"{row['name'] or row['fsn_no']} {row['rowers']}{row['crew_class']}"
-        written = language.write_number(gain, 0, "+")
-        opacity = WITHIN_OPACITY if row.get("exceeds_interval") is False else None
-        style = {"stroke-width": 0.7 * GAIN_ROW_PX, "stroke-opacity": opacity}
-        ink = INKS[1] if gain < 0 else INKS[0]
-        plot.add_path(f"M{x(0):.1f} {y:.1f}H{x(gain):.1f}", ink, f"{crew}: {written} s", style)
-        plot.add_text(GAIN_LABEL_PX - 6, y + 4, crew, "end", size=11)
-        side = -5 if gain < 0 else 5
-        plot.add_text(x(gain) + side, y + 4, written, "end" if gain < 0 else "start", size=10)
-    return plot.to_svg(caption)
+    ends_s = [*rows["gain_in_two_hours_s"], 0.0]
+    pictures = []
+    for part in rows.iter_slices(MAX_BARS):
+        plot = Plot(language, 480, GAIN_ROW_PX * part.height + 70, GAIN_LABEL_PX, 16)
+        x = fit_scale(ends_s, plot.left + 36, plot.right - 36)
+        plot.add_grid(x, language.say(SECONDS), signed=True)
+        for place, row in enumerate(part.to_dicts()):
+            _add_gain(plot, x, plot.top + (place + 0.5) * GAIN_ROW_PX, row)
+        pictures.append(plot.to_svg(caption))
+    return Markup("\n").join(pictures)
+
+
+def _add_gain(plot: Plot, x: Scale, y: float, row: Row) -> None:
+    """Add the bar of a crew, with its name and its seconds."""
+    gain_s = row["gain_in_two_hours_s"]
+    crew = f"{row['name'] or row['fsn_no']} {row['rowers']}{row['crew_class']}"
+    written = plot.language.write_number(gain_s, 0, "+")
+    opacity = WITHIN_OPACITY if row.get("exceeds_interval") is False else None
+    style = {"stroke-width": 0.7 * GAIN_ROW_PX, "stroke-opacity": opacity}
+    ink = INKS[1] if gain_s < 0 else INKS[0]
+    plot.add_path(f"M{x(0):.1f} {y:.1f}H{x(gain_s):.1f}", ink, f"{crew}: {written} s", style)
+    plot.add_text(GAIN_LABEL_PX - 6, y + 4, crew, "end", size=11)
+    side, anchor = (-5, "end") if gain_s < 0 else (5, "start")
+    plot.add_text(x(gain_s) + side, y + 4, written, anchor, size=10)
 
 
 # -- Traces -----------------------------------------------------------------------------------

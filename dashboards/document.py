@@ -56,7 +56,9 @@ _GLOBALS: Final = {
 }
 """What every template can use besides the methods of its document and its language."""
 
-_OF_DOCUMENT: Final = ("say", "table", "draw", "draw_each", "draw_traces", "language", "root")
+_OF_DOCUMENT: Final = (
+    *("say", "table", "draw", "draw_each", "draw_traces", "show_when", "language", "root"),
+)
 _OF_LANGUAGE: Final = (
     *("name_code", "name_method", "name_crew", "name_edition", "name_option", "name_choice"),
     *("get_title", "get_unit", "write_seasons"),
@@ -238,7 +240,8 @@ class Document:
             look = _choose_look(frame[name], is_on_phones)
             title = self.language.say(titles[name])
             head.append((look, title))
-            cells.append(self._write_cells(frame[name], look))
+            about = frame["fsn_no"] if name == "name" and "fsn_no" in frame.columns else None
+            cells.append(self._write_cells(frame[name], look, about))
         lines = map("".join, zip(*cells, strict=True))
         made = get_template("table.html.j2").render(
             heads=head,
@@ -271,8 +274,14 @@ class Document:
             chosen.append((self.show_when(values | {follows[-1]: last}), list(own)))
         return chosen
 
-    def _write_cells(self, cells: pl.Series, look: str) -> list[str]:
-        """Return the cells of a column; `look` is their class."""
+    def _write_cells(self, cells: pl.Series, look: str, about: pl.Series | None) -> list[str]:
+        """Return the cells of a column.
+
+        Args:
+            cells: the column.
+            look: class of its cells.
+            about: the number of the boat that each cell names, if it does.
+        """
         attributes = f" class={look}" if look else ""
         known: dict[str, Markup] = {}  # the same text comes often
 
@@ -283,14 +292,18 @@ class Document:
                 known[value] = self._write_cell(cells.name, value)
             return known[value]
 
-        return [f"<td{attributes}>{write(value)}</td>" for value in cells.to_list()]
+        if about is None:
+            return [f"<td{attributes}>{write(value)}</td>" for value in cells.to_list()]
+        return [
+            f"<td{attributes}>{self._link_text('fsn_no', boat, write(name)) if name else ''}</td>"
+            for name, boat in zip(cells.to_list(), about.to_list(), strict=True)
+        ]
 
     def _write_cell(self, name: str, value: Any) -> Markup:
         if isinstance(value, Markup):
             return value
-        address = self._link(name, value)
-        if address:
-            return Markup('<a href="{}">{}</a>').format(address, value)
+        if self._link(name, value):
+            return self._link_text(name, value, value)
         if name == "messages":  # in Dutch and in English
             return escape(value[LANGUAGES.index(self.language.tag)])
         if name in HASHES:
@@ -298,6 +311,11 @@ class Document:
         if name == "boat_type":
             return escape(self.language.name_code(value or ""))
         return escape(self.language.write(name, value))
+
+    def _link_text(self, name: str, value: Any, text: str) -> Markup:
+        """Return a text as a link to what the value of a column leads to, if it leads anywhere."""
+        address = self._link(name, value)
+        return Markup('<a href="{}">{}</a>').format(address, text) if address else escape(text)
 
     def _link_to_page(self, name: str, value: Any) -> str:
         """Return the way to the page about the value of a column; empty where there is none."""

@@ -7,20 +7,23 @@ from typing import Final
 import polars as pl
 
 from dashboards.guides import guide_file
-from dashboards.queries.boats import list_causes
+from dashboards.queries.boats import find_changed_options, find_decided_steps, list_causes
+from dashboards.queries.methods import get_method_page, group_by_status
 from dashboards.queries.results import Data, Results
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGES
 from pipeline.races.race import FATIGUE_REFERENCE
 from pipeline.studies.ladder import START
 from pipeline.tables.display import STEP_FACTOR
-from pipeline.tables.keys import SEASON_LEVEL
+from pipeline.tables.keys import LINE, SEASON_LEVEL
 from pipeline.tables.row import Row
-from warehouse.editions.compare import causes_of
+from warehouse.editions.compare import causes_of, parts_of
 from warehouse.queries.answers import race_chances
 from warehouse.queries.change_report import last_changes
+from warehouse.queries.views import DRAFT
 from warehouse.queries.years import summarise_years
 from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_path
+from warehouse.store.methods import KnownMethods
 
 MONTHS_AHEAD: Final = dt.timedelta(days=365)
 """How far the due list looks ahead."""
@@ -346,10 +349,50 @@ def read_changes(results: Results, edition: str | None = None) -> Data:
         "lines": changed,
         "changed": sum_up_changes(own),
         "vote": sum_up_gains(own),
+        "motion": read_motion(results, own),
         "names": names,
         "races": results.views.race_days(),
         "chosen": {"to_edition": chosen},
     }
+
+
+def read_motion(results: Results, lines: pl.DataFrame) -> Data | None:
+    """Return what a vote for a draft is about; None where nothing is put to the vote.
+
+    Args:
+        results: the tables.
+        lines: rows of `Results.line_changes` of two editions.
+
+    Returns:
+        `method`, its `titles` by language and its `page`; the options that change by who decided
+        them (`voted`) and the `validity` of a tow; and over the lines that change the median factor on
+        Cw of all that was `decided` before, and of all that is `proposed` now.
+    """
+    if lines.is_empty():
+        return None
+    new = lines["to_edition"][0]
+    changed = find_changed_options(results, lines["from_edition"][0], new)
+    if not changed:
+        return None
+    method = KnownMethods.from_store(results.views.store).get(new.removeprefix(DRAFT))
+    is_decided = pl.col("step").is_in(find_decided_steps(changed)).fill_null(value=False)
+    parts = parts_of(lines.filter(change="changed"))
+    return {
+        "method": method.name,
+        "titles": {tag: method.get_title(tag) for tag in LANGUAGES},
+        "page": get_method_page(results, method.name),
+        "voted": group_by_status(changed),
+        "validity": method.validity,
+        "decided": _measure_factor(parts.filter(is_decided)),
+        "proposed": _measure_factor(parts.filter(~is_decided)),
+    }
+
+
+def _measure_factor(parts: pl.DataFrame) -> float | None:
+    """Return the median over lines of what these parts of their change multiply to."""
+    of_lines = parts.group_by(LINE, maintain_order=True).agg(pl.col("factor").product())
+    median: float | None = of_lines.select(pl.col("factor").median()).item()
+    return median
 
 
 def read_race(results: Results, race: str, day: dt.date) -> Data:

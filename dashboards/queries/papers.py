@@ -60,7 +60,7 @@ def read_certificates(
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line in it.
     """
-    about = views.about()
+    about, objection = views.about(), Results(views).objection
     made = []
     for line in certificate_lines(views, edition, fsn_no):
         whose = f"{line['fsn_no']} {line['rowers']}{line['crew_class']}"
@@ -69,6 +69,7 @@ def read_certificates(
                 _describe_certificate(line, day or line["as_of"], site)
                 | {
                     "issuer": issuer,
+                    "objection": objection,
                     "made_by": line["code_version"] or about.get("code_version", ""),
                 }
             )
@@ -142,6 +143,7 @@ def read_proposal(
         )
     return {
         "letter": letter,
+        "objection": results.objection,
         "against": against,
         "proposals": proposals,
         "ballot": pl.DataFrame([one["effect"] for one in proposals], infer_schema_length=None),
