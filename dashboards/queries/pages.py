@@ -2,6 +2,7 @@
 
 import datetime as dt
 from collections import Counter
+from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
@@ -33,6 +34,9 @@ SHEETS: Final = (CSV, XLSX)
 
 SOUND_VERDICTS: Final = ("sound", "estimated")
 """Verdicts on an instrument that need no look."""
+
+WOULD_NOT_SHOW: Final = "would not show"
+"""The verdict on an instrument of which a fault of the usual size would not be found."""
 
 
 # -- Start ------------------------------------------------------------------------------------
@@ -269,8 +273,7 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
     spread = name_ends(results.rows("reproducibility"))
     diagnosis = views.ask("season_diagnosis")
     is_level = pl.col("instrument") == SEASON_LEVEL
-    is_in_doubt = ~pl.col("verdict").is_in(SOUND_VERDICTS)
-    is_usual_level = is_level & (pl.col("verdict") != "alarm")
+    is_found = ~pl.col("verdict").is_in([*SOUND_VERDICTS, WOULD_NOT_SHOW])
     eras = results.rows("era_shifts").filter(boat_type="all").drop_nulls("shift_ratio")
     return {
         "method": chosen,
@@ -279,7 +282,8 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
         "lacking": [year for year in between if year not in known],
         "links": parts,
         "parts": parts.filter(pl.col("season").is_in(divided["season"].implode())),
-        "diagnosis": diagnosis.filter(is_in_doubt & ~is_usual_level).with_columns(part),
+        "diagnosis": diagnosis.filter(is_found).with_columns(part),
+        "unseen": list_unseen_faults(diagnosis.filter(~is_level, method=chosen)),
         "levels": diagnosis.filter(is_level),
         "spread": spread.filter(pl.col("scope") != "all"),
         **sum_up_repeats(spread, chosen),
@@ -292,6 +296,33 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
         "chosen": {"method": chosen},
         **read_season_changes(results),
     }
+
+
+def list_unseen_faults(diagnosis: pl.DataFrame) -> list[Row]:
+    """Return of which instruments a fault would not show, and in which seasons.
+
+    Args:
+        diagnosis: rows of `season_diagnosis` of a method.
+
+    Returns:
+        `instrument`, and `spans`: the first and last of seasons in a row.
+    """
+    hidden = diagnosis.filter(verdict=WOULD_NOT_SHOW).sort("instrument", "season")
+    return [
+        {"instrument": instrument, "spans": _join_years(own["season"].unique().sort().to_list())}
+        for (instrument,), own in hidden.group_by("instrument", maintain_order=True)
+    ]
+
+
+def _join_years(years: Sequence[int]) -> list[tuple[int, int]]:
+    """Return the first and last of years in a row."""
+    spans: list[tuple[int, int]] = []
+    for year in years:
+        if spans and spans[-1][1] == year - 1:
+            spans[-1] = (spans[-1][0], year)
+        else:
+            spans.append((year, year))
+    return spans
 
 
 def name_ends(spread: pl.DataFrame) -> pl.DataFrame:
@@ -365,8 +396,8 @@ def read_motion(results: Results, lines: pl.DataFrame) -> Data | None:
 
     Returns:
         `method`, its `titles` by language and its `page`; the options that change by who decided
-        them (`voted`) and the `validity` of a tow; and over the lines that change the median factor on
-        Cw of all that was `decided` before, and of all that is `proposed` now.
+        them (`voted`) and the `validity` of a tow; and, over the lines that change, the median
+        factor on Cw of all that was `decided` before, and of all that is `proposed` now.
     """
     if lines.is_empty():
         return None

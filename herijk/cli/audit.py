@@ -29,7 +29,15 @@ TOW_FIELDS: Final = (
 """What JSON has of a boat, of types, and of a tow on the quay."""
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=(
+        "herijk audit FSN114",
+        'herijk audit "Razende Snol" --steps --method rebased',
+        "herijk audit Kromhoutwhaler Kuikensloep",
+        "herijk audit FSN114 --edition 2026-1",
+    ),
+)
 @argument(
     "names",
     nargs=-1,
@@ -130,7 +138,10 @@ def show_lineage(store: "Store", edition: str, name: str) -> None:
     show("lineage", vars(lineage(store, edition, name)), ("about", "lines"))
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=("herijk assess 2018-007",),
+)
 @argument("tow_id", metavar="TOW", help="Number of the tow in the list of the season.")
 @archive_option
 @data_option
