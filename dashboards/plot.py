@@ -176,6 +176,7 @@ class Plot:
         self.left, self.top = left, top + extra
         self.right, self.bottom = width - 10, height - 40
         self._marks: list[str] = []
+        self._has_links = False
         self._add_legend(placed)
 
     def fit_x(
@@ -286,7 +287,10 @@ class Plot:
         fill, shape = colour if filled else "none", SHAPES[kind % len(SHAPES)]
         end = f"><title>{escape(tip)}</title></path>" if tip else "/>"
         mark = f'<path d="M{x:.1f} {y:.1f}{shape}" fill="{fill}" stroke="{colour}"{end}'
-        self._marks.append(f'<a href="{escape(page)}">{mark}</a>' if page else mark)
+        if page:
+            self._has_links = True
+            mark = f'<a href="{escape(page)}" aria-label="{escape(tip)}">{mark}</a>'
+        self._marks.append(mark)
 
     def add_interval(
         self, x: float, low: float, high: float, ink: str, *, dashed: bool = False
@@ -341,7 +345,8 @@ class Plot:
 
     def to_svg(self, caption: str = "") -> Markup:
         """Return the picture; a screen reader says its caption, and skips one without."""
-        label = f'role="img" aria-label="{escape(caption)}"' if caption else 'aria-hidden="true"'
+        role = "group" if self._has_links else "img"  # an image has no parts that can be reached
+        label = f'role="{role}" aria-label="{escape(caption)}"' if caption else 'aria-hidden="true"'
         return Markup(  # noqa: S704 - texts were escaped
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
             f'{label} fill="currentColor" font-family="Open Sans, sans-serif" '

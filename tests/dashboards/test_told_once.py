@@ -63,7 +63,6 @@ def test_a_terminal_shows_headings_in_bold_and_verdicts_in_colour_and_says_the_s
     assert re.sub(r"\x1b\[\d+m", "", coloured).strip() == to_text(html)
 
 
-
 def get_words(block):
     """The words of a block without its numbers; of a table its titles."""
     text = " | ".join(block.rows[0]) if block.kind == "table" else block.text
