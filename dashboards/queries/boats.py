@@ -12,6 +12,7 @@ import polars as pl
 from dashboards.queries.results import Data, Results
 from pipeline.method.options import find_basis
 from pipeline.method.variant import Difference, differences
+from pipeline.register.register import draft_name
 from pipeline.tables.display import STEP_CHANGE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import answers, season_faults, select_own_races
@@ -63,6 +64,8 @@ def read_boat(
         return rows.filter(pl.col("method").is_in(shown)) if is_per_method else rows
 
     boat = results.select_boat("boats", fsn_no).row(0, named=True)
+    is_draft = pl.col("edition").str.starts_with(DRAFT)
+    of_editions = ~is_draft | pl.col("edition").is_in([draft_name(name) for name in shown])
     curves = own("curves").with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
@@ -77,7 +80,9 @@ def read_boat(
         "boat": boat,
         "answers": crews,
         "edition": chosen_edition,
-        "register": _leave_out_repeated_drafts(results.select_boat("register", fsn_no)),
+        "register": _leave_out_repeated_drafts(
+            results.select_boat("register", fsn_no).filter(of_editions)
+        ),
         "tows": results.select_boat("tows", fsn_no).sort("tow_date", "tow_id"),
         "curves": curves,
         "steps": _tabulate_steps(own_steps(results, fsn_no, shown)),
@@ -89,7 +94,7 @@ def read_boat(
         "options": own("option_effects").sort(size, descending=True, maintain_order=True),
         "checks": own("flagged"),
         "hand_windows": results.select_boat("hand_windows", fsn_no),
-        "lineage": results.select_boat("lineage", fsn_no),
+        "lineage": results.select_boat("lineage", fsn_no).filter(of_editions),
         "set_aside": results.views.frame(_SET_ASIDE, fsn_no, boat["name"] or fsn_no).to_dicts(),
         "drawn": {
             "curve": pl.concat(figure.values(), how="diagonal_relaxed"),
