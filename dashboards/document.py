@@ -57,12 +57,31 @@ _GLOBALS: Final = {
 """What every template can use besides the methods of its document and its language."""
 
 _OF_DOCUMENT: Final = (
-    *("say", "table", "draw", "draw_each", "draw_traces", "show_when", "language", "root"),
+    "say",
+    "table",
+    "draw",
+    "draw_each",
+    "draw_traces",
+    "show_when",
+    "language",
+    "root",
 )
 _OF_LANGUAGE: Final = (
-    *("name_code", "name_method", "name_crew", "name_edition", "name_option", "name_choice"),
-    *("get_title", "get_unit", "write_seasons"),
-    *("write", "write_number", "write_percent", "write_change", "write_day", "write_plain"),
+    "name_code",
+    "name_method",
+    "name_crew",
+    "name_edition",
+    "name_option",
+    "name_choice",
+    "get_title",
+    "get_unit",
+    "write_seasons",
+    "write",
+    "write_number",
+    "write_percent",
+    "write_change",
+    "write_day",
+    "write_plain",
 )
 
 

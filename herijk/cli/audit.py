@@ -16,15 +16,46 @@ if TYPE_CHECKING:
     from warehouse.store.store import Store
 
 BOAT_FIELDS: Final = (
-    *("simulated", "methods", "boat", "edition", "answers", "register", "tows", "curves", "steps"),
-    *("runs", "budget", "checks", "in_type", "repeat_pairs", "predicted", "options", "set_aside"),
+    "simulated",
+    "methods",
+    "boat",
+    "edition",
+    "answers",
+    "register",
+    "tows",
+    "curves",
+    "steps",
+    "runs",
+    "budget",
+    "checks",
+    "in_type",
+    "repeat_pairs",
+    "predicted",
+    "options",
+    "set_aside",
 )
 TYPE_FIELDS: Final = (
-    *("simulated", "method", "methods", "types", "differences", "reproducibility"),
+    "simulated",
+    "method",
+    "methods",
+    "types",
+    "differences",
+    "reproducibility",
 )
 TOW_FIELDS: Final = (
-    *("method", "simulated", "tow", "curve", "runs", "checks", "verdict", "redo"),
-    *("first_assessment", "ways_to_use", "lost", "own_before", "of_type"),
+    "method",
+    "simulated",
+    "tow",
+    "curve",
+    "runs",
+    "checks",
+    "verdict",
+    "redo",
+    "first_assessment",
+    "ways_to_use",
+    "lost",
+    "own_before",
+    "of_type",
 )
 """What JSON has of a boat, of types, and of a tow on the quay."""
 
