@@ -91,7 +91,7 @@ class Bench:
         self._draft = lru_cache(DRAFTS_KEPT)(history.under)
 
     def read_address(self, query: Mapping[str, str]) -> Asked:
-        """Return the question in an address; missing parts and an unknown boat take their default."""
+        """Return the question in an address; missing parts and unknown boats take defaults."""
         base, boats = query.get("base") or DEFAULT_BASE, self.boats["fsn_no"].to_list()
         boat = query.get("boat", "")
         return Asked(
