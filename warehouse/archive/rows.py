@@ -83,6 +83,8 @@ class Rows:
             ask: lines of `archief.toml` that would settle it, in which facts are filled in.
             facts: what is filled in: a value, or an expression of the rows.
         """
+        if self.frame.filter(is_wrong).is_empty():
+            return 0
         of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
         place_columns = ("path", "sheet", "line", "about")
         known = self.frame.lazy().select(*place_columns, _wrong=is_wrong, **of_rows)
