@@ -77,15 +77,8 @@ def index_archive(
     Raises:
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
-    if not root.is_dir():
-        raise MissingKnowledgeError(
-            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
-            "meetdata_<jaar>/.",
-            *(root, BOATS_FILE),
-        )
+    files = list_archive_files(root)
     profiles = profiles or read_profiles(root)
-    files = list_files(root)
-    _check_lists_are_there(root, files)
     hashes, unread = hash_files(files, hash_file)
     boats = read_boats(files, profiles)
     rows = read_lists(files, TOWS, profiles)
@@ -121,16 +114,29 @@ def index_archive(
     )
 
 
-def _check_lists_are_there(root: Path, files: Iterable[ArchiveFile]) -> None:
-    """Raise `MissingKnowledgeError` where there is no boat list or no tow list."""
+def list_archive_files(root: Path) -> list[ArchiveFile]:
+    """Return the files of an archive, which has at least a list of boats and one of tows.
+
+    Raises:
+        MissingKnowledgeError: there is no archive, or one of these lists is missing.
+    """
+    if not root.is_dir():
+        raise MissingKnowledgeError(
+            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
+            "meetdata_<jaar>/.",
+            root,
+            BOATS_FILE,
+        )
+    files = list_files(root)
     kinds = [file.kind for file in files]
-    said = None
+    missing = None
     if BOATS not in kinds:
-        said = say("there is no list of boats: {path} is expected.", path=BOATS_FILE)
+        missing = say("there is no list of boats: {path} is expected.", path=BOATS_FILE)
     elif TOWS not in kinds:
-        said = say("there is no list of tows: {path} is expected.", path=TOWS_FILE)
-    if said is not None:
-        raise MissingKnowledgeError("The archive at {} cannot be read: {}", root, said)
+        missing = say("there is no list of tows: {path} is expected.", path=TOWS_FILE)
+    if missing is not None:
+        raise MissingKnowledgeError("The archive at {} cannot be read: {}", root, missing)
+    return files
 
 
 def _find_unread_files(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:
