@@ -83,8 +83,10 @@ $(DEMO)/archief: | $(READY)
 test test-more slow: export POLARS_MAX_THREADS = 1
 test test-more slow: export OPENBLAS_NUM_THREADS = 1
 
+TESTS ?= not more and not slow
+
 test: $(DEVELOP)
-	@$(BIN)/python -m pytest -n 3 --dist worksteal
+	@$(BIN)/python -m pytest -n 3 --dist worksteal -m "$(TESTS)"
 
 test-more: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 3 --dist worksteal -m "more and not slow"
