@@ -31,7 +31,7 @@ ALL_PAIRS: Final = "all"
 
 
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Consecutive tows of one boat and crew without an alteration between them.
+    """Pair consecutive tows of one boat and crew without an alteration between them.
 
     The two are compared at the older tow's declared speed, where the older curve was measured, each
     with its log and load cell as the other boats show them. A boat that took part in its
@@ -140,7 +140,7 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.Da
 
 
 def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShifts]:
-    """Shift of Cw from the tows of an era to the next tow of the same boat and crew, later.
+    """Estimate the shift of Cw from the tows of an era to later tows of the same boat and crew.
 
     Per method, era but the last, and boat type; also over all types. The shift is a median with
     an interval from order statistics. Ageing is the median change per year of all pairs within the
@@ -179,7 +179,7 @@ def _years() -> pl.Expr:
 
 
 def _shift(pairs: pl.DataFrame, era: Era, yearly: FloatArray) -> Row:
-    """Shift from an era to later ones, less ageing by its changes of ln Cw per year."""
+    """Return the shift from an era to later ones, less ageing by its changes of ln Cw per year."""
     across = pairs.filter(
         pl.col("season_before").is_between(era.first, era.last) & (pl.col("season") > era.last)
     )

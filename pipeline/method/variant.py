@@ -86,7 +86,7 @@ def variant(
 
 
 def differences(method: Method, parent: Method) -> list[Difference]:
-    """Options in which a method differs from another that covers its seasons.
+    """Return options in which a method differs from another that covers its seasons.
 
     Returns:
         By step and option in the order of `Steps`, then by season.

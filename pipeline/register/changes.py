@@ -136,7 +136,7 @@ def compare_lines(
     return pairs.select(
         pl.lit(old["edition"].first(), pl.String).alias("from_edition"),
         pl.lit(new["edition"].first(), pl.String).alias("to_edition"),
-        *LINE,
+        pl.col(LINE),
         pl.Series("change", change, pl.String),
         known(declared).alias("cw_ratio"),
         known(declared).alias("power_ratio"),
@@ -167,12 +167,12 @@ def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame
         ladder: `tow_id`, `position`, `step`, `factor`.
     """
     steps = (
-        register.select(*LINE, "tow_id")
+        register.select(pl.col(LINE), "tow_id")
         .join(ladder, on="tow_id", maintain_order="left")
-        .sort(*LINE, "position")
+        .sort(pl.col(LINE), "position")
     )
     factor = pl.col("factor").cast(pl.Float64)
-    return steps.select(*LINE, pl.lit("method").alias("cause"), "step", factor)
+    return steps.select(pl.col(LINE), pl.lit("method").alias("cause"), "step", factor)
 
 
 def _fill_curve(a: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -182,8 +182,8 @@ def _fill_curve(a: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _rank(register: pl.DataFrame) -> pl.DataFrame:
-    """Lines with a curve, and their rank by speed at equal power within the class."""
-    lines = register.drop_nulls("cw_kg_m").select(*LINE, *COMPARED)
+    """Return lines with a curve, and their rank by speed at equal power within the class."""
+    lines = register.drop_nulls("cw_kg_m").select(pl.col(LINE), pl.col(COMPARED))
     power = (
         lines["crew_class"].replace_strict(ROWER_POWER_W, return_dtype=pl.Float64) * lines["rowers"]
     )
@@ -193,7 +193,7 @@ def _rank(register: pl.DataFrame) -> pl.DataFrame:
 
 
 def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:
-    """Half the 95 % interval of ln Cw; infinite where it is not known."""
+    """Return half the 95 % interval of ln Cw; infinite where it is not known."""
     low = pairs[f"cw_lo_kg_m{suffix}"].to_numpy()
     high = pairs[f"cw_hi_kg_m{suffix}"].to_numpy()
     known = np.isfinite(low) & np.isfinite(high) & (low > 0)
@@ -208,7 +208,9 @@ def _explain(
     moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
     parts_of = moved.rows_by_key(LINE, named=True)
     grounds = grounds if grounds is not None else pl.DataFrame(schema=[*LINE, "ground"])
-    ground_of = {tuple(line): ground for *line, ground in grounds.select(*LINE, "ground").rows()}
+    ground_of = {
+        tuple(line): ground for *line, ground in grounds.select(pl.col(LINE), "ground").rows()
+    }
     explained = []
     for pair, ratio in zip(pairs.iter_rows(named=True), ratios.tolist(), strict=True):
         causes: list[Row] = []

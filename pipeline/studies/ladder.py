@@ -93,7 +93,7 @@ def _mixed(old: Plan, new: Plan, count: int) -> Plan:
 
 
 def _add_factors(rungs: list[Computed]) -> pl.DataFrame:
-    """Return what each rung makes of every tow, and its factor on the one before."""
+    """Return the curves of every tow after each rung, and the factor on the rung before."""
     cw = np.stack([one.cw_at_declared for one in rungs])
     sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
     for rung in range(1, len(cw)):

@@ -100,7 +100,7 @@ def option_effects(
 def option_curves(
     method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame, cache: RunCache
 ) -> pl.DataFrame:
-    """Curves of every tow under all combinations of `TICKS` and the speeds of its season.
+    """Return curves of every tow under all combinations of `TICKS` and the speeds of its season.
 
     Args:
         method, tows, blocks, links, cache: as `option_effects` takes them.
@@ -127,7 +127,7 @@ def option_curves(
 
 
 def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
-    """Return what each tick and each speed does to a tow, over all combinations of the others.
+    """Return the effect of each tick and each speed on a tow, over all combinations of the others.
 
     Args:
         curves: rows of `option_curves`.
@@ -146,7 +146,7 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
 
 
 def _speeds(plan: Plan) -> Iterator[tuple[str, pl.Series, Plan]]:
-    """Every speed, the tows that have it, and a plan under which these do."""
+    """Yield each speed, the tows that have it, and a plan under which they do."""
     ways = [_speeds_of(steps) for steps in plan.steps]
     for speed in (AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED):
         there = plan.tows.frame["tow_id"].filter([speed in ways[one] for one in plan.which])
@@ -184,7 +184,7 @@ def _combinations(
     crossed: Mapping[str, tuple[str, tuple[object, object]]],
     links: pl.DataFrame,
 ) -> Iterator[tuple[dict[str, bool], Computed]]:
-    """All combinations of choices: which are on, and what comes of them."""
+    """Yield all combinations of choices: which are on, and the curves under them."""
     for corner in itertools.product((False, True), repeat=len(crossed)):
         flags = dict(zip(crossed, corner, strict=True))
         values = {crossed[name][0]: crossed[name][1][on] for name, on in flags.items()}
@@ -218,13 +218,13 @@ def _flags(flags: Mapping[str, bool]) -> list[pl.Expr]:
 
 
 def _select_complete(curves: pl.DataFrame, key: list[str], choices: int) -> pl.DataFrame:
-    """Curves of the tows of which every combination gives one, with `ln_cw`."""
+    """Return curves of the tows of which every combination gives one, with `ln_cw`."""
     every = pl.len().over(key) == 2**choices
     return curves.filter(every).with_columns(ln_cw=pl.col("cw_kg_m").log())
 
 
 def _effect(whole: pl.DataFrame, name: str, on: pl.Expr | None = None) -> pl.DataFrame:
-    """Second value / first value of Cw; tows without both are left out."""
+    """Return the ratio of the second to the first Cw of each tow that has both."""
     on, ln_cw = pl.col(name) if on is None else on, pl.col("ln_cw")
     means = whole.group_by("tow_id", maintain_order=True).agg(
         pl.lit(name).alias("option"),

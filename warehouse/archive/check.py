@@ -87,7 +87,7 @@ def check_archive(root: Path, language: str = "en") -> CheckReport:
     """
     profiles = read_profiles(root)
     index = index_archive(root, _hash_ends, profiles)
-    faults = [*index.faults]
+    faults = list(index.faults)
     for _, found in (read_races(root, profiles), read_published_registers(root, profiles)):
         faults += found
     of_headers = list(_faults_in_headers(root, index))
@@ -146,7 +146,7 @@ def _faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iter
             profile = index.profiles.find(tow["season"])
             samples, place, defects = read_tow_samples(root, tow, profile)
             planned = index.runs.filter(tow_id=tow["tow_id"])["run"]
-            if not {*samples["run"].unique()} <= {*planned}:
+            if not set(samples["run"].unique()) <= set(planned):
                 yield _unplanned_fault(tow, samples, planned)
             yield from judge_samples(samples, place, tow, index.runs, defects).faults
         except BaseException as error:
@@ -191,7 +191,7 @@ def _report_cause(faults: list[Fault], names_of: dict[str, set[str]], language: 
         remedy=spoken(REMEDIES[faults[0].reason_code], language),
         cells=[str(cell) for cell in cells if cell is not None],
         places=[Place(f.path, f.line, f.tow_id) for f in faults[:SHOWN]],
-        ask=[*dict.fromkeys(line for fault in faults for line in fault.ask)],
+        ask=list(dict.fromkeys(line for fault in faults for line in fault.ask)),
     )
 
 

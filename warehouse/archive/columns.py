@@ -224,7 +224,7 @@ def split_header(cell: str) -> tuple[str, str | None]:
 
 
 def find_header(lines: Sequence[str], columns: Iterable[Column]) -> tuple[int, str]:
-    """Which of the first lines is the header, the one that names most columns; its delimiter."""
+    """Find the header, the line that names most columns, and its delimiter."""
     wanted = tuple(columns)
     best = 0, 0, ";"
     for place, line in enumerate(lines[:HEADER_WITHIN]):
@@ -238,7 +238,7 @@ def find_header(lines: Sequence[str], columns: Iterable[Column]) -> tuple[int, s
 
 
 def count_names(header: Iterable[str], columns: Iterable[Column]) -> int:
-    """How many cells of a row are names of columns."""
+    """Return how many cells of a row are names of columns."""
     names = {fold(name) for column in columns for name in (column.header, *column.also)}
     return len({split_header(cell.strip('"'))[0] for cell in header} & names)
 
@@ -331,7 +331,7 @@ def _explain_column(
     free: Sequence[Column],
     found: Mapping[str, FoundColumn],
 ) -> _Problem:
-    """Return what is wrong with a cell that stands for no column, a taken one, or several."""
+    """Return the fault of a cell that stands for no column, a taken one, or several."""
     known = ", ".join(f"[{unit}]" for c in free or namesakes for unit in UNITS[c.dimension])
     keys = [f"units.{column.key}" for column in free or namesakes]
     if not fitting:

@@ -140,7 +140,7 @@ def list_archive_files(root: Path) -> list[ArchiveFile]:
 
 
 def _find_unread_files(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:
-    """Return what lies in the archive and is not read."""
+    """Return a fault for each file of the archive that is not read."""
     text = say(
         "'{path}' is not read: it has another name than the archive's files. Rename it, or put it "
         "under ignore in archief.toml."
@@ -180,7 +180,7 @@ def _find_unlisted_samples(
 
 
 def _find_idle_settings(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]:
-    """Return what `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
+    """Return a fault for each day, season or tow of `archief.toml` that no list has."""
     days, seasons, tows = (set(listed[key]) for key in ("tow_date", "season", "tow_id"))
 
     def has_none(first: int, last: int) -> bool:

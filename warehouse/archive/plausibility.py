@@ -94,7 +94,7 @@ def judge_samples(
     runs: pl.DataFrame,
     defects: Mapping[int, RunDefect] | None = None,
 ) -> Judged:
-    """Return what of the selected runs of a tow can be used; other runs stay as they are.
+    """Judge the selected runs of a tow; other runs stay as they are.
 
     Args:
         samples: frame of `SAMPLE_SCHEMA`, as `read_tow_samples` returns it.
@@ -188,7 +188,7 @@ def _check_length(judgement: Judgement) -> None:
 
 
 def _leave_out_copies(judgement: Judgement) -> None:
-    """Of runs with exactly the same samples, the one at its intended speed is what was measured."""
+    """Set aside runs with the samples of another; the one nearest to its intended speed stays."""
 
     def off_target(run: Run) -> tuple[float, int]:
         ratio = run.medians["log1"] / run.intended_m_s
@@ -339,7 +339,7 @@ def _find_implausible(typical: Mapping[str, Array], intended_m_s: float) -> set[
 
 
 def _estimate_resistance_kg_m(runs: list[Run]) -> float:
-    """Force / speed squared of a typical run, which a fault over most of one does not move."""
+    """Return the median over runs of force / speed squared, which one faulty run does not move."""
     each = [run.medians["force"] / run.intended_m_s**2 for run in runs]
     return abs(float(np.nanmedian(each))) if np.isfinite(each).any() else np.nan
 
@@ -475,7 +475,7 @@ Found = tuple[float, int]
 
 
 def mean(run: Run, channel: str) -> Found:
-    """Of the samples that are numbers."""
+    """Return the mean of the samples that are numbers."""
     return float(np.nanmean(run.channels[channel], dtype=np.float64)), 0
 
 

@@ -182,7 +182,7 @@ def _ask_word(word: str) -> str:
 
 
 def cell(key: str) -> pl.Expr:
-    """Return what is written in a column, null for nothing."""
+    """Return the text of a column as it is written; null for nothing."""
     return pl.col("cells").struct.field(key)
 
 

@@ -170,7 +170,7 @@ def _find_known(
 
 def _add_other_answers(error: DefectiveHeaderError, profile: SeasonProfile) -> DefectiveHeaderError:
     """Return the error about a header with the answers that are not the name of a column."""
-    said, ask = error.message, [*error.ask]
+    said, ask = error.message, list(error.ask)
     if any(".run = " in line for line in ask):
         text = say(
             '{header} Where no column says which run a row is: runs = "file" if each run has its '
@@ -233,7 +233,7 @@ def _read_text(path: Path, profile: SeasonProfile) -> SampleTable:
 
 
 def _cut_body(data: bytes, above: int) -> bytes:
-    """Return what is below so many lines, without blank lines at the end."""
+    """Return the text below so many lines, without blank lines at the end."""
     start = 0
     for _ in range(above):
         start = data.find(b"\n", start) + 1
@@ -458,7 +458,7 @@ def _read_parquet(path: Path, profile: SeasonProfile) -> SampleTable:
         raise _too_large_error(path)
     names = {header.names[column.index]: key for key, column in header.columns.items()}
     try:
-        frame = pl.DataFrame(pl.from_arrow(pq.read_table(path, columns=[*names])))
+        frame = pl.DataFrame(pl.from_arrow(pq.read_table(path, columns=list(names))))
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
         raise _damaged_error(path, "Parquet", error) from error
     numbers = {}

@@ -209,7 +209,7 @@ def _reaches_too_far(title: str) -> Sentence:
 
 
 def _cell_text(cell: Any, formula: str | None) -> str:
-    """Return what a person sees in a cell, or its formula where that was never calculated."""
+    """Return a cell as a person sees it, or its formula where that was never calculated."""
     value = cell.value
     if value is None:
         is_calculated = cell.data_type == "str"  # a formula whose result is an empty text

@@ -79,7 +79,9 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     beside = lines.columns
     for side, edition in (("old", old), ("new", new)):
         facts = edition.register.select(
-            *LINE, pl.col("name").alias(f"{side}_name"), pl.col("status").alias(f"{side}_status")
+            pl.col(LINE),
+            pl.col("name").alias(f"{side}_name"),
+            pl.col("status").alias(f"{side}_status"),
         )
         lines = lines.join(facts, on=LINE, how="left", maintain_order="left")
     name = pl.coalesce("new_name", "old_name").alias("name")
@@ -100,7 +102,7 @@ def _add_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
 
 
 def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
-    """Every step from the old method to the new one, on the new edition's tows still there.
+    """Apply the steps from the old method to the new one, one after another, to the same tows.
 
     From print it begins at the method that was in force when the register was printed.
     """
@@ -134,7 +136,7 @@ def _method_in_print(store: Store, printed: Edition) -> Method | None:
 def _explain_printed_lines(
     printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition
 ) -> pl.DataFrame:
-    """Return what is known of printed lines before the steps of the method.
+    """Return the known causes of printed lines before the steps of the method.
 
     With samples: from print to the tow by the method then in force. Without: the log error of its
     season under the new method, in closed form.
@@ -158,7 +160,7 @@ def _explain_printed_lines(
 
     def parts(of: pl.DataFrame, cause: str, factor: pl.Series) -> pl.DataFrame:
         step = pl.lit(None, pl.String).alias("step")
-        named = of.select(*LINE, pl.lit(cause).alias("cause"), step, factor.alias("factor"))
+        named = of.select(pl.col(LINE), pl.lit(cause).alias("cause"), step, factor.alias("factor"))
         return named.filter(pl.col("factor").is_finite())
 
     return pl.concat(
@@ -330,11 +332,11 @@ def _summarise(lines: pl.DataFrame) -> Row:
 def parts_of(lines: pl.DataFrame) -> pl.DataFrame:
     """Return the causes of lines, one a row: `LINE`, `cause`, `step` and `factor`."""
     causes = pl.col("causes").str.json_decode(pl.List(CAUSE))
-    return lines.select(*LINE, causes).explode("causes").unnest("causes")
+    return lines.select(pl.col(LINE), causes).explode("causes").unnest("causes")
 
 
 def causes_of(lines: pl.DataFrame) -> list[Row]:
-    """Return what each cause, or step of a method, did; that with the most lines first.
+    """Return the effect of each cause, or step of a method; that with the most lines first.
 
     Returns:
         Rows of `cause`, `step` (where a method is the cause), `lines` (how many it moved), and of
@@ -357,7 +359,7 @@ def causes_of(lines: pl.DataFrame) -> list[Row]:
 
 
 def _rows(lines: pl.DataFrame) -> list[Row]:
-    """Lines as rows, each with the causes that moved it."""
+    """Return lines as rows, each with the causes that moved it."""
     rows = lines.with_columns(pl.col("causes").str.json_decode(pl.List(CAUSE))).to_dicts()
     for row in rows:
         moved = [cause for cause in row["causes"] if abs(cause["factor"] - 1.0) > NO_FACTOR]

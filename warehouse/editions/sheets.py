@@ -213,7 +213,7 @@ def _number_format(field: Field) -> str:
 
 
 def _write_words(frame: pl.DataFrame) -> pl.DataFrame:
-    """Codes in the words that people read."""
+    """Replace codes by the words that people read."""
     if "flags" in frame.columns:
         to_look_at = pl.col("flags").list.len() > 0
         frame = frame.with_columns(pl.when(to_look_at).then(pl.lit("ja")).alias("flags"))

@@ -77,7 +77,7 @@ def _lines(views: Views, edition: str) -> pl.DataFrame:
             raise make_unknown_edition_error(edition, drafts["edition"].unique())
         changes = views.table("register_changes").filter(to_edition=edition)
         before = drafts.join(changes, left_on="edition", right_on="from_edition", how="semi")
-    held = before.select(*LINE, from_edition="edition", old_cw_kg_m="cw_kg_m")
+    held = before.select(pl.col(LINE), from_edition="edition", old_cw_kg_m="cw_kg_m")
     return lines.join(held, on=LINE, how="left", maintain_order="left")
 
 

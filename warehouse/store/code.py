@@ -34,7 +34,7 @@ def code_hash(*packages: str) -> str:
 
 @cache
 def code_version() -> str:
-    """Version of the package and a hash of what computes a register line from the archive's files.
+    """Return the version with a hash of the code that makes a register line from the archive.
 
     The hash needs no git and is equal wherever the same source is installed. Two lines with equal
     inputs, method and code version are equal.
