@@ -159,7 +159,9 @@ class Interval(NamedTuple):
 
 def cw(a_kg_m: ArrayLike, s_s2_m2: ArrayLike, speed_m_s: ArrayLike) -> FloatArray:
     """Return Cw [kg/m] on the hyperbola A / (1 - s v^2), broadcast; infinite from B on."""
-    a, s, v = (np.asarray(x, dtype=np.float64) for x in (a_kg_m, s_s2_m2, speed_m_s))
+    a = np.asarray(a_kg_m, dtype=np.float64)
+    s = np.asarray(s_s2_m2, dtype=np.float64)
+    v = np.asarray(speed_m_s, dtype=np.float64)
     denominator = 1.0 - s * v * v
     valid = denominator > 0
     return np.where(valid, a / np.where(valid, denominator, 1.0), np.inf)
@@ -202,7 +204,9 @@ def rebase(
     A pure scale error of the log maps hyperbolas onto hyperbolas: A / y^2 and B y, with A B^2
     unchanged. Exact as long as no wind correction depends on the speed. An infinite B stays so.
     """
-    a, b, y = (np.asarray(x, dtype=np.float64) for x in (a_kg_m, b_m_s, log_factor))
+    a = np.asarray(a_kg_m, dtype=np.float64)
+    b = np.asarray(b_m_s, dtype=np.float64)
+    y = np.asarray(log_factor, dtype=np.float64)
     return a / (y * y), b * y
 
 

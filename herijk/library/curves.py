@@ -100,7 +100,8 @@ class Curve:
         np.float64(3.0)
         """
         power = _none_below_zero(power_w)
-        a, s = (np.broadcast_to(x, power.shape) for x in (self.a_kg_m, self.s_s2_m2))
+        a = np.broadcast_to(self.a_kg_m, power.shape)
+        s = np.broadcast_to(self.s_s2_m2, power.shape)
         return speed_at_power(a, s, power)
 
 

@@ -142,7 +142,8 @@ def _calibration(runs: Sequence[_Run]) -> float:
 
 
 def _oblique_kg_m(run: _Run, y: float, tow: Tow) -> float:
-    ahead, abeam = (run.wind_m_s * f(run.angle_rad) for f in (np.cos, np.sin))
+    ahead = run.wind_m_s * np.cos(run.angle_rad)
+    abeam = run.wind_m_s * np.sin(run.angle_rad)
     force = air_force_n(tow.hull, ahead, abeam, AIR_OF_2015)
     return float((force / (y * run.log_m_s) ** 2).mean())
 
@@ -163,7 +164,8 @@ def _searched(
     speed: Floats, gross: Floats, ahead: Floats, following: Floats, still: float
 ) -> Floats:
     """Return Cw with air coefficients searched per run between 0 and 1 to fit the curve best."""
-    head, behind = (np.full(speed.size, c) for c in OLD_COEFFICIENTS)
+    head = np.full(speed.size, OLD_COEFFICIENTS[0])
+    behind = np.full(speed.size, OLD_COEFFICIENTS[1])
     for _ in range(ITERATIONS):
         cw = gross - head * ahead - behind * following + still
         a_kg_m, b_m_s = _fit(speed, cw, HIGHEST_B_M_S)

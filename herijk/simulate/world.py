@@ -371,7 +371,9 @@ def _freeboards_m(
         return None
     waterplane_m2 = BLOCK_COEFFICIENT * boat.waterline_length_m * boat.beam_m
     deeper_m = (weight_kg - boat.boat_type.weight_kg) / (1000.0 * waterplane_m2)
-    lowest, bow, stern = (round(boat.bow_height_m * ratio - deeper_m, 3) for ratio in FREEBOARDS)
+    lowest = round(boat.bow_height_m * FREEBOARDS[0] - deeper_m, 3)
+    bow = round(boat.bow_height_m * FREEBOARDS[1] - deeper_m, 3)
+    stern = round(boat.bow_height_m * FREEBOARDS[2] - deeper_m, 3)
     return lowest, bow, stern
 
 

@@ -77,10 +77,10 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
     """Return the new curve at the old declared speed, 0 where that is not below B."""
-    a, cw, v, old = (
-        pairs[name].to_numpy().astype(np.float64)
-        for name in ("a_kg_m", "cw_kg_m", "declared_speed_m_s", "declared_speed_m_s_before")
-    )
+    a = pairs["a_kg_m"].to_numpy().astype(np.float64)
+    cw = pairs["cw_kg_m"].to_numpy().astype(np.float64)
+    v = pairs["declared_speed_m_s"].to_numpy().astype(np.float64)
+    old = pairs["declared_speed_m_s_before"].to_numpy().astype(np.float64)
     left = 1.0 - s_of_height(a, cw, v) * old**2
     return np.where(left > 0, a / np.where(left > 0, left, 1.0), 0.0)
 
@@ -123,7 +123,8 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.Da
     found = observed.select("method").unique(maintain_order=True).join(scopes, how="cross")
     for part in (pairs, tows):
         found = found.join(part, on=key, how="left", maintain_order="left")
-    n_pairs, chained = (found[name].cast(pl.Float64).to_numpy() for name in ("n_pairs", "chained"))
+    n_pairs = found["n_pairs"].cast(pl.Float64).to_numpy()
+    chained = found["chained"].cast(pl.Float64).to_numpy()
     dof = n_pairs / (1.0 + chained / (2.0 * n_pairs))
     ends = {"lo": 0.5 - LEVEL / 2, "hi": 0.5 + LEVEL / 2}
     wider = {

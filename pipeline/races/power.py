@@ -23,10 +23,10 @@ def find_line_curves(lines: pl.DataFrame, suffix: str = "") -> tuple[FloatArray,
         lines: `a_kg_m`, `b_m_s`, `cw_kg_m`, `declared_speed_m_s`, each with the suffix.
         suffix: of the columns that are read.
     """
-    a, b, c, v = (
-        lines[f"{name}{suffix}"].to_numpy()
-        for name in ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s")
-    )
+    a = lines[f"a_kg_m{suffix}"].to_numpy()
+    b = lines[f"b_m_s{suffix}"].to_numpy()
+    c = lines[f"cw_kg_m{suffix}"].to_numpy()
+    v = lines[f"declared_speed_m_s{suffix}"].to_numpy()
     has_b = np.isfinite(b)
     s = np.where(has_b, s_of_b(np.where(has_b, b, 1.0)), s_of_height(a, c, v))
     return a, s

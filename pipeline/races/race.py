@@ -25,13 +25,16 @@ between them."""
 
 def mean_speed_m_s(distance_m: ArrayLike, time_s: ArrayLike) -> FloatArray:
     """Return the mean speed [m/s] through the water of a distance without the current."""
-    distance, time = (np.asarray(x, dtype=np.float64) for x in (distance_m, time_s))
+    distance = np.asarray(distance_m, dtype=np.float64)
+    time = np.asarray(time_s, dtype=np.float64)
     return distance / time
 
 
 def power_per_rower_w(cw_kg_m: ArrayLike, speed_m_s: ArrayLike, rowers: ArrayLike) -> FloatArray:
     """Return the power per rower [W]: Cw(v) v^3 / n (presentation R. Pot, 24 January 2015)."""
-    cw, speed, number = (np.asarray(x, dtype=np.float64) for x in (cw_kg_m, speed_m_s, rowers))
+    cw = np.asarray(cw_kg_m, dtype=np.float64)
+    speed = np.asarray(speed_m_s, dtype=np.float64)
+    number = np.asarray(rowers, dtype=np.float64)
     return cw * speed**3 / number
 
 

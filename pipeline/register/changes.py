@@ -220,13 +220,9 @@ def _explain(
             causes = [{k: v for k, v in part.items() if v is not None} for part in known]
             remainder = ratio / math.prod(cause["factor"] for cause in causes)
             if abs(remainder - 1.0) > NO_FACTOR or not causes:
-                ground = ground_of.get(line) or _default_ground(pair)
-                causes.append({"cause": ground, "factor": remainder})
+                ground = "method" if pair["tow_id"] == pair["tow_id_new"] else "tow"
+                if pair["tow_id"] is None or pair["tow_id_new"] is None:
+                    ground = "printed"
+                causes.append({"cause": ground_of.get(line, ground), "factor": remainder})
         explained.append(json.dumps(causes))
     return explained
-
-
-def _default_ground(pair: Row) -> str:
-    if pair["tow_id"] is None or pair["tow_id_new"] is None:
-        return "printed"
-    return "method" if pair["tow_id"] == pair["tow_id_new"] else "tow"

@@ -70,7 +70,8 @@ def due_list(
     own = lines.filter(pl.col("a_kg_m").is_not_null())
     known = own.with_columns(_powers(own)).with_columns(_find_speed_of_own_curve())
     without = _find_speed_of_like_boats(lines.join(own, on=LINE, how="anti"), known)
-    low, high = (pl.col("declared_speed_m_s") * ratio for ratio in VALID_RATIO)
+    low = pl.col("declared_speed_m_s") * VALID_RATIO[0]
+    high = pl.col("declared_speed_m_s") * VALID_RATIO[1]
     return (
         pl.concat([known, without], how="diagonal_relaxed")
         .select(

@@ -77,7 +77,8 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     fatigue = _fatigue(rowed, rules)
     power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, rowed["rowers"]) * fatigue
     penalty = rowed["penalty_w"].fill_null(0.0).to_numpy()
-    low, high = (ratio * rowed["declared_speed_m_s"].to_numpy() for ratio in VALID_RATIO)
+    declared = rowed["declared_speed_m_s"].to_numpy()
+    low, high = VALID_RATIO[0] * declared, VALID_RATIO[1] * declared
     beyond = (speed < low) | (speed > high)
     without = rowed["without"].to_numpy()
     remark = np.select([~has_line, ~sound, beyond], [without, ABOVE_B, BEYOND_CURVE], "")

@@ -222,9 +222,8 @@ def temperature_change_kg_m(
     length = tows.get_of_runs("waterline_length_m")
     surface = wetted_surface_m2(np.where(has_change, mass_kg, 0.0)[tows.tow], length)
     speed = _or_one(speed_m_s)
-    at_reference, as_towed = (
-        friction_cw_kg_m(speed, length, surface, t) for t in (REFERENCE_WATER_C, celsius[tows.tow])
-    )
+    at_reference = friction_cw_kg_m(speed, length, surface, REFERENCE_WATER_C)
+    as_towed = friction_cw_kg_m(speed, length, surface, celsius[tows.tow])
     return at_reference - as_towed, is_recorded
 
 

@@ -64,9 +64,8 @@ def air_parts(
     """
     front = 0.5 * AIR_DENSITY_KG_M3 * front_area_m2
     side = 0.5 * AIR_DENSITY_KG_M3 * side_area_m2
-    ahead, behind = (
-        np.where(oblique, term(f"front_{way}"), term(f"head_{way}")) for way in ("ahead", "behind")
-    )
+    ahead = np.where(oblique, term("front_ahead"), term("head_ahead"))
+    behind = np.where(oblique, term("front_behind"), term("head_behind"))
     return AirParts(front * ahead, front * behind, np.where(oblique, side * term("side"), 0.0))
 
 

@@ -60,9 +60,8 @@ def ladder(
         step; 1 at the start) and `cw_kg_m` (after it). The factors of a tow multiply to its total.
     """
     cache = cache or RunCache()
-    old, new = (
-        Plan.from_method(method, tows, blocks, cache) for method in (from_method, to_method)
-    )
+    old = Plan.from_method(from_method, tows, blocks, cache)
+    new = Plan.from_method(to_method, tows, blocks, cache)
     of_old, of_new = links or (_instruments(plan) for plan in (old, new))
     rungs: list[Computed] = []
     for count in range(len(STEP_ORDER) + 1):

@@ -181,7 +181,9 @@ def _find_unlisted_samples(
 
 def _find_idle_settings(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]:
     """Return a fault for each day, season or tow of `archief.toml` that no list has."""
-    days, seasons, tows = (set(listed[key]) for key in ("tow_date", "season", "tow_id"))
+    days = set(listed["tow_date"])
+    seasons = set(listed["season"])
+    tows = set(listed["tow_id"])
 
     def has_none(first: int, last: int) -> bool:
         return not any(first <= season <= last for season in seasons)

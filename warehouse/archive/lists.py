@@ -215,11 +215,14 @@ def _keep_filled_rows(
     rows: Iterable[tuple[int, Sequence[str], bool]],
 ) -> list[tuple[int, Sequence[str], bool]]:
     """Return the rows that hold something, without remarks behind a `#`."""
-    return [row for row in rows if "".join(row[1]).strip() and not _is_remark(row[1][0].strip())]
-
-
-def _is_remark(cell: str) -> bool:
-    return cell.startswith("#") and not re.match(_SPREADSHEET_ERROR, cell[:20])
+    filled = []
+    for row in rows:
+        _, cells, _ = row
+        first = cells[0].strip() if cells else ""
+        is_remark = first.startswith("#") and not re.match(_SPREADSHEET_ERROR, first[:20])
+        if "".join(cells).strip() and not is_remark:
+            filled.append(row)
+    return filled
 
 
 # From a table of text to typed rows
@@ -305,7 +308,11 @@ def _parse_rows(
     """
     keys = [column.key for column in kind.columns]
     frame = _collect_cells(table, places, words, kind)
-    needed = [column.key for column in kind.columns if _is_needed(kind, column)]
+    needed = []
+    for column in kind.columns:
+        declared = find_declared_column(kind, column.key)
+        if column.required and (declared is None or not declared.nullable):
+            needed.append(column.key)
     shown = pl.col(needed).replace({MERGED: None})
     is_fragment = pl.sum_horizontal(shown.is_null()) * 2 > len(needed)
     about = _parse_cell(kind, kind.about, places) if kind.about else pl.lit(None, pl.String)
@@ -355,12 +362,6 @@ def _parse_rows(
     rows.listed = every.with_columns(**values).select(schema.names()).cast(schema)
     rows.frame = rows.listed.filter(is_kept & ~is_lost)
     return rows
-
-
-def _is_needed(kind: ListKind, column: Column) -> bool:
-    """Return whether every row must have a cell of this column."""
-    declared = find_declared_column(kind, column.key)
-    return column.required and (declared is None or not declared.nullable)
 
 
 def _is_number(kind: ListKind, key: str) -> bool:

@@ -271,9 +271,8 @@ def _check_held_as_a_fix(judgement: Judgement) -> None:
     for key in ("log1", "log2", "wind_speed"):
         if not all({key, "gps"} <= run.channels.keys() for run in runs):
             continue
-        other_hz, gps_hz = (
-            float(np.median([run.changes_hz(channel) for run in runs])) for channel in (key, "gps")
-        )
+        other_hz = float(np.median([run.changes_hz(key) for run in runs]))
+        gps_hz = float(np.median([run.changes_hz("gps") for run in runs]))
         least, most = HELD_AS_A_FIX_HZ
         if gps_hz > MOVES_AS_A_LOG_HZ and least < other_hz < most:
             text = say(
@@ -291,7 +290,8 @@ def _check_against_plan(judgement: Judgement) -> None:
     for key, wind, power, most in FOLLOWS_PLAN:
         if not all({key, wind} <= run.channels.keys() for run in judgement.runs):
             continue
-        own, other = (_measure_spread(judgement.runs, name, power) for name in (key, wind))
+        own = _measure_spread(judgement.runs, key, power)
+        other = _measure_spread(judgement.runs, wind, power)
         if own > EXCHANGED_SPREAD_RATIO * most and other < most:
             text = say(
                 "Columns '{}' and '{}' seem to be exchanged: from run to run the second follows "
@@ -431,7 +431,7 @@ def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
 
 
 def _wrong_force(run: Run, values: Array, usual_n: float) -> BoolArray:
-    low, high = (ratio * usual_n for ratio in FORCE_SPIKE_RATIO)
+    low, high = FORCE_SPIKE_RATIO[0] * usual_n, FORCE_SPIKE_RATIO[1] * usual_n
     wrong = _outside(values, low, high)
     near_zero = FORCE_DEAD_RATIO * usual_n
     if (np.abs(values) <= near_zero).any():

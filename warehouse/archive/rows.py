@@ -102,12 +102,20 @@ class Rows:
             if lost == "cell":
                 message = say("{what} The cell counts as empty.", what=message)
             tow_id = row["about"] if self.kind.about == "tow_id" else None
-            place = row["path"], tow_id, row["line"]
             lines = [line.format(**filled) for line in ask]
             if asks_word:
-                lines.append(_ask_word(filled["cell"]))
+                word = filled["cell"].replace("\\", "\\\\").replace('"', '\\"')
+                lines.append(f'[words]\n"{word}" = "?"')
             code = code or self.kind.reason_code
-            fault = Fault(*place, code, message, lost, ask=tuple(lines))
+            fault = Fault(
+                path=row["path"],
+                tow_id=tow_id,
+                line=row["line"],
+                reason_code=code,
+                message=message,
+                lost=lost,
+                ask=tuple(lines),
+            )
             self.faults.append(fault)
             if row["about"]:
                 self.lost.setdefault(row["about"], fault)
@@ -173,12 +181,6 @@ class Rows:
         season = pl.col("season")
         self.drop(~season.is_between(low, high), text, cell=season, low=low, high=high)
         return table.validate(self.frame.select(table.column_names()), cast=True)
-
-
-def _ask_word(word: str) -> str:
-    """Return the line of `archief.toml` that says what a word means."""
-    quoted = word.replace("\\", "\\\\").replace('"', '\\"')
-    return f'[words]\n"{quoted}" = "?"'
 
 
 def cell(key: str) -> pl.Expr:

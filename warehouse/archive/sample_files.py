@@ -305,7 +305,8 @@ def _read_cells(body: bytes, header: Header, first_line: int) -> pl.DataFrame:
         if column.scale == CLOCK:
             found[key] = pl.select(pl.when(is_whole).then(cells)).to_series()
             continue
-        commas, points = (cells.str.contains(mark, literal=True).sum() for mark in ",.")
+        commas = cells.str.contains(",", literal=True).sum()
+        points = cells.str.contains(".", literal=True).sum()
         pattern = _NUMBER.replace("M", "," if commas >= points else ".")
         numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
         is_good = cells.str.contains(pattern) & is_whole & numbers.is_finite()
@@ -438,7 +439,8 @@ def _convert_times(
         )
         known = ", ".join(UNITS["time"])
         said = say(text, column=column.header, unit=column.unit, known=known)
-        raise DefectiveHeaderError("bad_time", say_at_line(line, said), line, _ask_time(profile))
+        ask = (profile.ask("units.time"), profile.ask("absent", '["?"]'))
+        raise DefectiveHeaderError("bad_time", say_at_line(line, said), line, ask)
     others = pl.exclude("run", "time")
     return frame.with_columns(
         times.alias("time"), pl.when(is_unread).then(float("nan")).otherwise(others).name.keep()

@@ -347,13 +347,13 @@ def _add_instruments(
     after it in the season.
     """
     frame = rows.frame.with_row_index("_row").sort("tow_date")
-    before, after = (
-        frame.join_asof(
-            checks, left_on="tow_date", right_on="day", by="season", strategy=strategy,
-            check_sortedness=False,
-        ).select("load_cell_ratio", "load_cell_sd")
-        for strategy in ("backward", "forward")
-    )  # fmt: skip
+    checked = checks.rename({"day": "tow_date"})
+    before = frame.join_asof(
+        checked, on="tow_date", by="season", strategy="backward", check_sortedness=False
+    )
+    after = frame.join_asof(
+        checked, on="tow_date", by="season", strategy="forward", check_sortedness=False
+    )
     for name in ("load_cell_ratio", "load_cell_sd"):
         frame = frame.with_columns(before[name].fill_null(after[name]))
     frame = frame.sort("_row").join(burned, on="tow_id", how="left", maintain_order="left")

@@ -58,7 +58,8 @@ def archive_tables(
     tows, contradicted = judge_tows(
         add_boat_types(listed, listed_boats), stack_blocks(blocks, runs_read), contents
     )
-    sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
+    sound = sound.join(tows, on="tow_id", how="semi")
+    runs = runs_read.join(tows, on="tow_id", how="semi")
     windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
     beyond = fault_frame(find_windows_outside_run(windows, present))
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")

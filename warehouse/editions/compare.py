@@ -121,7 +121,8 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     if start is None:
         return NO_LADDER
     blocks = stack_blocks(intake.all_blocks(store), runs)
-    before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
+    before = old.tables.get("tow_instruments")
+    after = new.tables.get("tow_instruments")
     is_known = after is not None and (before is not None or old.method is None)
     return ladder(start, new.method, tows, blocks, (before, after) if is_known else None)
 
@@ -310,7 +311,8 @@ def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules
     if store.read_fingerprint("listed_races") is None or not store.count_rows("listed_races"):
         return without_races
     results = store.read("listed_races")
-    before, after = (replay(lines_in_time(store, one), results, rules) for one in (old, new))
+    before = replay(lines_in_time(store, old), results, rules)
+    after = replay(lines_in_time(store, new), results, rules)
     members = new.tables.get("ensemble", pl.DataFrame())
     return replace(
         without_races,

@@ -70,7 +70,8 @@ def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None
     Raises:
         MissingKnowledgeError: there is no such edition or draft.
     """
-    before, after = (_edition(views, name, valid_from) for name in (old, new))
+    before = _edition(views, old, valid_from)
+    after = _edition(views, new, valid_from)
     lines = compare(views.store, before, after)
     return _named(views, lines.drop("name", "old_status", "new_status"))
 
@@ -264,9 +265,8 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
         with one under both, and how many those are.
     """
     history, results = views.table("register_history"), views.store.read("listed_races")
-    before, after = (
-        replay(history.filter(edition=edition), results, RaceRules()) for edition in (old, new)
-    )
+    before = replay(history.filter(edition=old), results, RaceRules())
+    after = replay(history.filter(edition=new), results, RaceRules())
     ranked = race_changes(before, after).drop_nulls("new_rank")
     moved = ranked.filter(pl.col("old_rank") != pl.col("new_rank")).height
     members = _members(views, new)

@@ -230,11 +230,14 @@ def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
     measured = {"basis": pl.lit(MEASURED), INPUTS_HASH: pl.lit(None, pl.String)}
     changed = []
     for method in now["methods"]["method"]:
-        old, new = (t["register"].filter(edition=draft_name(method)) for t in (was, now))
+        draft = draft_name(method)
+        old = was["register"].filter(edition=draft)
+        new = now["register"].filter(edition=draft)
         if old.is_empty() or new.is_empty():
             continue
         redefined = hashes[0].get(method) != hashes[1].get(method)
-        old, new = (lines.with_columns(**measured) for lines in (old, new))
+        old = old.with_columns(**measured)
+        new = new.with_columns(**measured)
         ground = grounds(old, new, same, others=others, method=redefined, code=code)
         lines = compare_lines(old, new, NO_PARTS, ground).filter(pl.col("change") != "same")
         named = lines.join(names, on="fsn_no", how="left", maintain_order="left")

@@ -94,9 +94,10 @@ class Scenario:
 def _lines(curves: pl.DataFrame) -> pl.DataFrame:
     """Return Cw of each curve at `LINE_RATIOS` of its declared speed."""
     rows = LINE_RATIOS.join(curves, how="cross")
-    a, cw, declared, ratio = (
-        rows[name].to_numpy() for name in ("a_kg_m", "cw_kg_m", "declared_speed_m_s", "ratio")
-    )
+    a = rows["a_kg_m"].to_numpy()
+    cw = rows["cw_kg_m"].to_numpy()
+    declared = rows["declared_speed_m_s"].to_numpy()
+    ratio = rows["ratio"].to_numpy()
     speed = ratio * declared
     drawn = curve.cw(a, s_of_height(a, cw, declared), speed)
     nothing = pl.lit(None, pl.Float64)
