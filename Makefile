@@ -82,6 +82,7 @@ $(DEMO)/archief: | $(READY)
 test test-more slow: export POLARS_MAX_THREADS = 1
 test test-more slow: export OPENBLAS_NUM_THREADS = 1
 
+# By their marks. CI runs TESTS="not slow", so that what tests share is made once.
 TESTS ?= not more and not slow
 
 test: $(DEVELOP)

@@ -167,11 +167,10 @@ def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[
         within = own.filter((pl.col("season_before") >= ERAS[-1].first) & (_years() > 0))
         yearly = within.select(pl.col("ln_ratio") / _years()).to_series().to_numpy()
         groups = {ALL_TYPES: own} | {t: own.filter(pl.col("boat_type") == t) for t in types}
-        rows += [
-            {"method": method, "boat_type": boat_type, "era": era.name} | _shift(group, era, yearly)
-            for boat_type, group in groups.items()
-            for era in ERAS[:-1]
-        ]
+        for boat_type, group in groups.items():
+            for era in ERAS[:-1]:
+                key: Row = {"method": method, "boat_type": boat_type, "era": era.name}
+                rows.append(key | _shift(group, era, yearly))
     return frame_of(EraShifts, rows)
 
 

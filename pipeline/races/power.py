@@ -32,6 +32,17 @@ def find_line_curves(lines: pl.DataFrame, suffix: str = "") -> tuple[FloatArray,
     return a, s
 
 
+def compute_line_cw(lines: pl.DataFrame, speed_m_s: FloatArray | pl.Series) -> FloatArray:
+    """Return Cw [kg/m] of each line at a speed; infinite from its B on.
+
+    Args:
+        lines: as `find_line_curves` takes them.
+        speed_m_s: a speed for each line.
+    """
+    a, s = find_line_curves(lines)
+    return cw(a, s, speed_m_s)
+
+
 def speed_at_power(a_kg_m: FloatArray, s_s2_m2: FloatArray, power_w: FloatArray) -> FloatArray:
     """Return the speed [m/s] at which Cw(v) v^3 is a power of the whole crew, by bisection."""
     low = np.zeros_like(power_w)

@@ -104,17 +104,17 @@ def compare_lines(
     )
     in_both = (pairs["cw_kg_m"].is_not_null() & pairs["cw_kg_m_new"].is_not_null()).to_numpy()
     speed = pairs["declared_speed_m_s"].fill_null(1.0).to_numpy()
-    old_curve = _fill_curve(*find_line_curves(pairs))
-    new_curve = _fill_curve(*find_line_curves(pairs, "_new"))
+    old_a, old_s = _find_filled_curves(pairs, "")
+    new_a, new_s = _find_filled_curves(pairs, "_new")
 
     def ratio_at(share: float) -> FloatArray:
-        ratio = cw(*new_curve, share * speed) / cw(*old_curve, share * speed)
+        ratio = cw(new_a, new_s, share * speed) / cw(old_a, old_s, share * speed)
         return np.where(in_both, ratio, np.nan)
 
     slow, declared, fast = ratio_at(VALID_RATIO[0]), ratio_at(1.0), ratio_at(VALID_RATIO[1])
     compared = in_both & np.isfinite(declared)
-    power = np.where(compared, cw(*old_curve, speed), 0.0) * speed**3
-    same_power_speed = speed_at_power(*new_curve, power)
+    power = np.where(compared, cw(old_a, old_s, speed), 0.0) * speed**3
+    same_power_speed = speed_at_power(new_a, new_s, power)
     time_ratio = speed / np.where(compared & (same_power_speed > 0), same_power_speed, np.nan)
 
     largest = np.max(np.abs(np.nan_to_num(np.stack([slow, declared, fast]) - 1.0, nan=np.inf)), 0)
@@ -144,7 +144,7 @@ def compare_lines(
         pl.Series("causes", causes, pl.String),
         known(slow, np.isfinite(slow)).alias("cw_ratio_slow"),
         known(fast, np.isfinite(fast)).alias("cw_ratio_fast"),
-        *(pl.col(name).alias(f"old_{name}") for name in SHOWN),
+        pl.col(SHOWN).name.prefix("old_"),
         *(pl.col(f"{name}_new").alias(f"new_{name}") for name in SHOWN),
         pl.Series("old_power_w", old_power).fill_nan(None),
         known(old_power * declared).alias("new_power_w"),
@@ -156,7 +156,7 @@ def compare_lines(
 def largest_first(lines: pl.DataFrame) -> pl.DataFrame:
     """Sort lines by the size of their change, whatever its sign; those without a ratio on top."""
     size = pl.col("cw_ratio").log().abs().fill_null(math.inf)
-    return lines.sort(size, *LINE, descending=[True, *(False for _ in LINE)])
+    return lines.sort(-size, pl.col(LINE))
 
 
 def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
@@ -175,8 +175,9 @@ def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame
     return steps.select(pl.col(LINE), pl.lit("method").alias("cause"), "step", factor)
 
 
-def _fill_curve(a: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _find_filled_curves(pairs: pl.DataFrame, suffix: str) -> tuple[FloatArray, FloatArray]:
     """Return A and s = 1/B^2; where a register has no line, those of a harmless curve."""
+    a, s = find_line_curves(pairs, suffix)
     has_curve = np.isfinite(a) & np.isfinite(s)
     return np.where(has_curve, a, 1.0), np.where(has_curve, s, 0.0)
 
@@ -187,9 +188,10 @@ def _rank(register: pl.DataFrame) -> pl.DataFrame:
     power = (
         lines["crew_class"].replace_strict(ROWER_POWER_W, return_dtype=pl.Float64) * lines["rowers"]
     )
-    speed = pl.Series("speed", speed_at_power(*find_line_curves(lines), power.to_numpy()))
+    a, s = find_line_curves(lines)
+    speed = pl.Series(speed_at_power(a, s, power.to_numpy()))
     rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
-    return lines.with_columns(speed).with_columns(rank=rank).drop("speed")
+    return lines.with_columns(speed=speed).with_columns(rank=rank).drop("speed")
 
 
 def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:

@@ -9,9 +9,8 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.curve import cw
 from pipeline.method.definition import Method
-from pipeline.races.power import find_line_curves
+from pipeline.races.power import compute_line_cw
 from pipeline.tables.keys import LINE
 
 
@@ -86,7 +85,7 @@ def print_reproduction(
         )
         .join(of_tow, on="tow_id", maintain_order="left")
     )
-    there = cw(*find_line_curves(compared), compared["speed_m_s"])
+    there = compute_line_cw(compared, compared["speed_m_s"])
     known = pl.when(pl.Series(there).is_finite()).then(pl.Series(there))
     return (
         compared.with_columns(known.alias("cw_kg_m"))

@@ -101,8 +101,11 @@ def check_archive(root: Path, language: str = "en") -> CheckReport:
 
 def _name_tow(tow: Row) -> set[str]:
     """Return the id and the files of a tow."""
-    paths = [path for path in (tow["samples_path"], tow["second_path"]) if path]
-    return {tow["tow_id"], *(part for path in paths for part in path.split(PARTS))}
+    names = {tow["tow_id"]}
+    for path in (tow["samples_path"], tow["second_path"]):
+        if path:
+            names.update(path.split(PARTS))
+    return names
 
 
 def _hash_ends(path: Path) -> str:
@@ -117,12 +120,10 @@ def _hash_ends(path: Path) -> str:
 def _faults_in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
     """Read the header of every samples file that a list names."""
     not_listed = {f.path for f in index.faults if f.reason_code == "samples_not_listed"}
-    of_one_run = {
-        part
-        for name, numbers in (("samples_path", "samples_runs"), ("second_path", "second_runs"))
-        for path in index.tows.filter(pl.col(numbers).is_not_null())[name]
-        for part in path.split(PARTS)
-    }
+    of_one_run: set[str] = set()
+    for name, numbers in (("samples_path", "samples_runs"), ("second_path", "second_runs")):
+        for path in index.tows.filter(pl.col(numbers).is_not_null())[name]:
+            of_one_run.update(path.split(PARTS))
     for file in list_files(root):
         if file.kind != SAMPLES or not file.inside or file.path in not_listed:
             continue

@@ -237,9 +237,18 @@ def find_header(lines: Sequence[str], columns: Iterable[Column]) -> tuple[int, s
     return -best[1], best[2]
 
 
+def fold_names(columns: Iterable[Column]) -> set[str]:
+    """Return all names that columns go by, folded."""
+    names = set()
+    for column in columns:
+        names.add(fold(column.header))
+        names.update(map(fold, column.also))
+    return names
+
+
 def count_names(header: Iterable[str], columns: Iterable[Column]) -> int:
     """Return how many cells of a row are names of columns."""
-    names = {fold(name) for column in columns for name in (column.header, *column.also)}
+    names = fold_names(columns)
     return len({split_header(cell.strip('"'))[0] for cell in header} & names)
 
 
@@ -272,7 +281,7 @@ def find_columns(
     """
     by_name: dict[str, list[Column]] = {}
     for column in columns:
-        for name in {fold(name) for name in (column.header, *column.also)}:
+        for name in fold_names([column]):
             by_name.setdefault(name, []).append(column)
     found: dict[str, FoundColumn] = {}
     problems: list[_Problem] = []

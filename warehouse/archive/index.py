@@ -161,22 +161,24 @@ def _find_unlisted_samples(
     """Return the samples that no row names, in seasons whose list could be read."""
     unread_seasons = {file.season for file in files if file.path in unread_lists}
     named = set()
-    for tow_id, season, *cells in listed.select(
-        "tow_id", "season", "file", "second_file"
-    ).iter_rows():
+    names = listed.select("tow_id", "season", "file", "second_file")
+    for tow_id, season, first, second in names.iter_rows():
         plan, profile = profiles.find_plan(tow_id or "", season), profiles.find(season)
-        for cell in filter(None, cells):
-            named |= {fold_file_name(cell), *name_run_files(cell, profile, plan).values()}
+        for cell in (first, second):
+            if cell:
+                named.add(fold_file_name(cell))
+                named.update(name_run_files(cell, profile, plan).values())
     message = say("No row of a tow list names this file.")
-    return [
-        Fault(file.path, None, None, "samples_not_listed", message)
-        if file.inside
-        else fault_from(outside_archive_error(file.path), file.path)
-        for file in files
-        if file.kind == SAMPLES
-        and fold_file_name(file.full_path.name) not in named
-        and file.season not in unread_seasons
-    ]
+    faults = []
+    for file in files:
+        is_named = fold_file_name(file.full_path.name) in named
+        if file.kind != SAMPLES or is_named or file.season in unread_seasons:
+            continue
+        if file.inside:
+            faults.append(Fault(file.path, None, None, "samples_not_listed", message))
+        else:
+            faults.append(fault_from(outside_archive_error(file.path), file.path))
+    return faults
 
 
 def _find_idle_settings(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]:

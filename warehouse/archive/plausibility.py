@@ -577,14 +577,13 @@ def leave_out_stuck_gps(judgement: Judgement) -> None:
         gps = run.channels.get("gps")
         if gps is not None and (gps == gps[0]).all():
             alike.setdefault(float(gps[0]), []).append(run)
-    for run in [run for held in alike.values() if _speed_differs(held) for run in held]:
-        gps = run.channels["gps"]
-        what = say("gps holds {:.6g} throughout, at other speeds too", gps[0])
-        judgement.lose(run, "stuck_channel", what, "column")
-        run.channels["gps"] = np.full_like(gps, np.nan)
-
-
-def _speed_differs(runs: list[Run]) -> bool:
-    seconds = [run.second_means(run.channels["log1"]) for run in runs]
-    moved_m_s = max(np.nanmax(means) - np.nanmin(means) for means in seconds)
-    return len({run.intended_m_s for run in runs}) > 1 or bool(moved_m_s > GPS_MUST_MOVE_M_S)
+    for held, runs in alike.items():
+        speeds = [run.second_means(run.channels["log1"]) for run in runs]
+        moved_m_s = max(np.nanmax(means) - np.nanmin(means) for means in speeds)
+        n_intended = len({run.intended_m_s for run in runs})
+        if n_intended == 1 and not moved_m_s > GPS_MUST_MOVE_M_S:
+            continue
+        for run in runs:
+            what = say("gps holds {:.6g} throughout, at other speeds too", held)
+            judgement.lose(run, "stuck_channel", what, "column")
+            run.channels["gps"] = np.full_like(run.channels["gps"], np.nan)

@@ -91,11 +91,11 @@ class Rows:
         wrong_rows = known.filter("_wrong").collect()
         for row in wrong_rows.iter_rows(named=True):
             filled = {name[1:]: row[name] for name in of_rows}
-            short = {
-                name: shorten(value) if isinstance(value, str) and name != "other" else value
-                for name, value in filled.items()
-            }
-            what = say(text, **facts | short)
+            shown = dict(facts)
+            for name, value in filled.items():
+                is_cell = isinstance(value, str) and name != "other"
+                shown[name] = shorten(value) if is_cell else value
+            what = say(text, **shown)
             if row["sheet"]:
                 what = say("sheet '{sheet}': {what}", sheet=row["sheet"], what=what)
             message = say_at_line(row["line"], what)

@@ -166,10 +166,11 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
             hashes = {edition.method.name: edition.manifest.method_hash}
             tows, code_version = edition.tables["tows"], edition.manifest.code_version
             rows["lineage"].append(lineage_rows(edition.register, tows, hashes, code_version))
-    return {
-        table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
-        for table, frames in rows.items()
-    }
+    tables = {}
+    for table, frames in rows.items():
+        conforming = [conform(table, frame) for frame in frames]
+        tables[table] = pl.concat([TABLES[table].create_empty(), *conforming])
+    return tables
 
 
 def read_decisions_of_edition(store: Store, edition: Edition) -> pl.DataFrame:

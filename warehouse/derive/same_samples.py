@@ -50,11 +50,9 @@ def find_same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         .join(facts, on="tow_id", maintain_order="left")
         .sort("tow_date", "tow_id", "run")
     )
-    faults = [
-        fault
-        for _, same in runs.group_by("content", maintain_order=True)
-        for fault in _faults(same)
-    ]
+    faults: list[Fault] = []
+    for _, same in runs.group_by("content", maintain_order=True):
+        faults += _faults(same)
     rows = fault_frame(faults)
     return rows.unique("tow_id", keep="first", maintain_order=True)
 

@@ -14,9 +14,8 @@ from typing import Final
 import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
-from pipeline.curve import cw
 from pipeline.method.definition import RUNS_ALONE, Method, find_method_in_force
-from pipeline.races.power import find_line_curves
+from pipeline.races.power import compute_line_cw
 from pipeline.register.changes import (
     NO_FACTOR,
     NO_PARTS,
@@ -150,14 +149,14 @@ def _explain_printed_lines(
     measured = lines.join(computed, on="tow_id", maintain_order="left").join(
         speeds, on="tow_id", maintain_order="left"
     )
-    at_tow_speed = cw(*find_line_curves(measured), measured["tow_speed"].to_numpy())
+    at_tow_speed = compute_line_cw(measured, measured["tow_speed"].to_numpy())
     reproduction = measured["computed_cw"] / pl.Series(at_tow_speed, dtype=pl.Float64)
 
     unmeasured = lines.join(measured, on=LINE, how="anti").select(lines.columns)
     rebased = rebase_printed(unmeasured, new.tables["log_factors"], new.method)
     unmeasured = unmeasured.join(rebased, on=LINE, how="semi", maintain_order="left")
     speed = unmeasured["declared_speed_m_s"].to_numpy()
-    closed_form = cw(*find_line_curves(rebased), speed) / cw(*find_line_curves(unmeasured), speed)
+    closed_form = compute_line_cw(rebased, speed) / compute_line_cw(unmeasured, speed)
 
     def parts(of: pl.DataFrame, cause: str, factor: pl.Series) -> pl.DataFrame:
         step = pl.lit(None, pl.String).alias("step")

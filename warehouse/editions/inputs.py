@@ -56,15 +56,11 @@ def find_same_tows(
 
     Compared is what both tables say: a fact that was not recorded earlier is no difference.
     """
-    shared = {
-        name: [column for column in was[name].columns if column in now[name].columns]
-        for name in ("tows", "tow_runs")
-    }
-    one, other = (
-        add_input_hashes(*(edition[name].select(shared[name]) for name in shared))
-        for edition in (was, now)
-    )
-    return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
+    of_tow = [name for name in was["tows"].columns if name in now["tows"].columns]
+    of_run = [name for name in was["tow_runs"].columns if name in now["tow_runs"].columns]
+    before = add_input_hashes(was["tows"].select(of_tow), was["tow_runs"].select(of_run))
+    after = add_input_hashes(now["tows"].select(of_tow), now["tow_runs"].select(of_run))
+    return frozenset(before.join(after, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
 
 
 def list_files(store: Store) -> dict[str, str]:

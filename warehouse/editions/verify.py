@@ -272,16 +272,13 @@ def differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.
         such row; and `columns`: those that differ.
     """
     names = list(dict.fromkeys([*was.columns, *now.columns]))
-    before, after = (
-        frame.with_columns(
-            *(pl.lit(None).alias(name) for name in names if name not in frame.columns),
-            pl.int_range(pl.len()).over(key).alias("row"),
-            pl.lit(value=True).alias("there"),
-        )
-        for frame in (was, now)
-    )
-    pairs = before.join(
-        after,
+    numbered = []
+    for frame in (was, now):
+        lacking = {name: pl.lit(None) for name in names if name not in frame.columns}
+        row = pl.int_range(pl.len()).over(key)
+        numbered.append(frame.with_columns(**lacking, row=row, there=pl.lit(value=True)))
+    pairs = numbered[0].join(
+        numbered[1],
         on=[*key, "row"],
         how="full",
         coalesce=True,

@@ -53,8 +53,12 @@ def line_changes(views: Views) -> pl.DataFrame:
     """
     kept, register = views.table("register_changes"), views.table("register")
     pairs = kept.select(PAIR).unique().sort(PAIR).rows()
-    sides = [compare_lines(*(register.filter(edition=e) for e in pair)) for pair in pairs]
-    both = pl.concat([compare_lines(register.clear(), register.clear()), *sides])
+    compared_pairs = [compare_lines(register.clear(), register.clear())]
+    for old, new in pairs:
+        compared_pairs.append(
+            compare_lines(register.filter(edition=old), register.filter(edition=new))
+        )
+    both = pl.concat(compared_pairs)
     beside = both.drop(set(kept.columns) - {*PAIR, *LINE})
     key = [*PAIR, *LINE]
     changes = kept.join(beside, on=key, how="left", nulls_equal=True, maintain_order="left")
@@ -151,8 +155,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     )
     predicted = behind("predicted_cw").select(
         "method", "tow_id", "predicted_cw_kg_m", "predicted_lo_kg_m", "predicted_hi_kg_m",
-        *("disagrees", pl.col("standard_speed_m_s").alias("predicted_speed_m_s")),
-        cw_there_kg_m="cw_kg_m",
+        "disagrees", predicted_speed_m_s="standard_speed_m_s", cw_there_kg_m="cw_kg_m",
     )  # fmt: skip
     joined = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")

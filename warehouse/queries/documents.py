@@ -49,19 +49,15 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
     about = views.table("editions").filter(edition=edition)
     terms = about.select(OF_EDITION).to_dicts() or [dict.fromkeys(OF_EDITION)]
     crews = lines.sort("rowers", "crew_class").to_dicts()
-    return [
-        line
-        | terms[0]
-        | {
-            "log_known": known,
-            "others": [
-                other
-                for other in crews
-                if other["fsn_no"] == line["fsn_no"] and any(other[k] != line[k] for k in LINE)
-            ],
-        }
-        for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts()
-    ]
+    rows = []
+    for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts():
+        others = []
+        for other in crews:
+            is_same_line = all(other[name] == line[name] for name in LINE)
+            if other["fsn_no"] == line["fsn_no"] and not is_same_line:
+                others.append(other)
+        rows.append(line | terms[0] | {"log_known": known, "others": others})
+    return rows
 
 
 def _lines(views: Views, edition: str) -> pl.DataFrame:
