@@ -17,12 +17,28 @@ SHOWING: Final = ("dashboards", "pipeline", "warehouse")
 """Packages with which pages are made; their words count too."""
 
 
+@dg.asset
+@incremental()
+def objection_terms(folders: Folders) -> pl.DataFrame:
+    """To whom, until when and on which grounds a number can be objected to, by `beheer.toml`."""
+    settings = folders.settings
+    until = settings.objections_until
+    terms = {
+        "objections_to": settings.objections_to,
+        "objections_until": until.isoformat() if until else "",
+        "objection_grounds": settings.objection_grounds,
+    }
+    return pl.DataFrame({"key": list(terms), "value": list(terms.values())})
+
+
 @dg.asset(deps=duck.IN_DATABASE)
 @incremental(also=duck.describe_contents(), is_whole=duck.is_whole)
-def warehouse_database(folders: Folders, about_archive: pl.DataFrame) -> pl.DataFrame:
+def warehouse_database(
+    folders: Folders, about_archive: pl.DataFrame, objection_terms: pl.DataFrame
+) -> pl.DataFrame:
     """All tables in one DuckDB file, swapped in whole, with the meaning of each column."""
     tables = {name: folders.store.read(name) for name in duck.IN_DATABASE}
-    return duck.warehouse_database(tables, about_archive, folders.store)
+    return duck.warehouse_database(tables, about_archive, objection_terms, folders.store)
 
 
 @dg.asset(deps=[warehouse_database], code_version=code_hash(*SHOWING, __name__))

@@ -4,6 +4,7 @@ It lies in the data folder and may be left out. No setting in it can change a nu
 register; which differences between boats matter decides verdicts on types.
 """
 
+import datetime as dt
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
@@ -36,6 +37,9 @@ class Settings(BaseModel):
         difference_cw, difference_a, difference_b: spread between boats of a type, as a ratio, from
             which they are not equal; 3 % of Cw is a minute in a race of two hours.
         issuer: the federation, by whom certificates are issued.
+        objections_to: who receives an objection to a number: a name, an address, or both.
+        objections_until: the last day on which one can be made.
+        objection_grounds: on which grounds, as the end of a sentence.
         site: where the site is for others, `https://...`; the QR code of certificates leads there.
         dask: scheduler of the Dask cluster that reads the seasons: `tcp://host:8786`; without it
             they are read in the process of the rebuild.
@@ -58,6 +62,9 @@ class Settings(BaseModel):
     difference_a: float = Field(default=DIFFERENCES_THAT_MATTER["a_kg_m"], gt=0, lt=1)
     difference_b: float = Field(default=DIFFERENCES_THAT_MATTER["b_m_s"], gt=0, lt=1)
     issuer: str = ""
+    objections_to: str = ""
+    objections_until: dt.date | None = None
+    objection_grounds: str = ""
     site: str = Field(default="", pattern=r"^(https?://\S+)?$")
     dask: str | None = Field(default=None, pattern=r"^(tcp|tls)://")
 

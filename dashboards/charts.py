@@ -1,8 +1,8 @@
 """The kinds of chart, each drawn from rows of the tables. Nothing is computed here.
 
-`draw_groups` has a value by season or tow, `draw_curves` a resistance curve, `draw_scatter` the
-tows of a type, `draw_gains` a bar for every crew, `draw_shares` a bar for every cause, and
-`trace_lines` with `trace_frame` what instruments said second by second.
+`draw_groups` has a value by season or tow, `draw_curves` resistance curves, `draw_scatter` the
+tows of a type, `draw_gains` a bar for every crew, and `trace_lines` with `trace_frame` what
+instruments said second by second.
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,7 +13,7 @@ from markupsafe import Markup, escape
 
 from dashboards import words
 from dashboards.language import Language
-from dashboards.plot import GREY, INKS, Plot, Scale, fit_scale
+from dashboards.plot import GREY, INKS, LegendEntry, Plot, Scale, fit_scale, get_ink
 from pipeline.history import ERAS
 from pipeline.messages import say
 from pipeline.method.definition import COMPLETE
@@ -66,7 +66,10 @@ def draw_groups(
         return Markup()
     methods = list(dict.fromkeys(row["method"] for row in known))
     groups = list(dict.fromkeys(row[group] for row in known))
-    legend = {_get_method_kind(name): language.name_method(name) for name in methods}
+    legend = [
+        LegendEntry.from_kind(language.name_method(name), _get_method_kind(name))
+        for name in methods
+    ]
     plot = Plot(language, legend=legend)
     drawn = [row[name] for row in known for name in (value, *ends)]
     y = plot.fit_y(drawn, including=[1.0] if with_one else [], bulk=group == "tow")
@@ -84,9 +87,8 @@ def draw_groups(
         low, high = row[ends[0]], row[ends[1]]
         if low is not None and high is not None:
             is_dashed = row.get("interval", COMPLETE) != COMPLETE
-            plot.add_interval(x, y(low), y(high), kind, dashed=is_dashed)
+            plot.add_interval(x, y(low), y(high), get_ink(kind), dashed=is_dashed)
         plot.add_point(x, y(row[value]), kind, _write_tip(language, row, group, "method", value))
-    plot.add_legend(legend)
     return plot.to_svg(caption)
 
 
@@ -123,7 +125,10 @@ def draw_seasons(language: Language, rows: pl.DataFrame, caption: str) -> Markup
     methods = list(dict.fromkeys(row["method"] for row in known))
     seasons = list(dict.fromkeys(row["season"] for row in known))
     eras = [era for era in ERAS if any(era.first <= season <= era.last for season in seasons)]
-    legend = {_get_method_kind(name): language.name_method(name) for name in methods}
+    legend = [
+        LegendEntry.from_kind(language.name_method(name), _get_method_kind(name))
+        for name in methods
+    ]
     height = SEASON_ROW_PX * len(seasons) + ERA_ROW_PX * len(eras) + 90
     plot = Plot(language, 480, height, SEASON_LABEL_PX, 30, legend)
     ratios = [row[name] for row in known for name in ("lowest_ratio", "highest_ratio")]
@@ -140,7 +145,6 @@ def draw_seasons(language: Language, rows: pl.DataFrame, caption: str) -> Markup
                 place = (methods.index(row["method"]) + 1) / (len(methods) + 1)
                 _add_season(plot, x, top + place * SEASON_ROW_PX, row)
             top += SEASON_ROW_PX
-    plot.add_legend(legend)
     return plot.to_svg(caption)
 
 
@@ -150,7 +154,7 @@ def _add_season(plot: Plot, x: Scale, y: float, row: Row) -> None:
     low, middle, high = (
         x(100.0 * (row[name] - 1.0)) for name in ("lowest_ratio", "median_ratio", "highest_ratio")
     )
-    ink = INKS[kind % len(INKS)]
+    ink = get_ink(kind)
     plot.add_path(f"M{low:.1f} {y:.1f}H{high:.1f}", ink, style={"stroke-width": 2})
     tip = _write_tip(plot.language, row, "season", "method", "median_ratio")
     plot.add_point(middle, y, kind, tip)
@@ -162,10 +166,16 @@ def _get_method_kind(method: str) -> int:
     return known.index(method) if method in known else len(known)
 
 
+WAYS: Final = {0: 1, 1: -1}
+"""The direction of a run by the kind of its mark: a circle out, a square back."""
+
+
 def draw_curves(
     language: Language, rows: pl.DataFrame, caption: str, width: int = 480, height: int = 300
 ) -> Markup:
-    """Return a curve of Cw with its band, the run points, and the interval at declared speed.
+    """Return the curves of Cw of a tow: lines with their bands, run points and intervals.
+
+    Every method has its colour on the same axes.
 
     Args:
         language: of what is written.
@@ -174,35 +184,53 @@ def draw_curves(
         width: of the picture [px].
         height: of the picture [px].
     """
+    methods = rows["method"].unique(maintain_order=True).to_list()
+    inks = {name: get_ink(_get_method_kind(name)) for name in methods}
+    legend = []
+    if "point" in rows["kind"]:
+        for kind, way in WAYS.items():
+            name = language.say(words.name_direction(way))
+            legend.append(LegendEntry(name, kind, "currentColor"))
+    if len(methods) > 1:
+        legend += [LegendEntry(language.name_method(name), None, ink) for name, ink in inks.items()]
+    plot = Plot(language, width, height, legend=legend)
+    x = plot.fit_x(rows["speed_m_s"])
+    y = plot.fit_y([value for name in ("cw_kg_m", *CW_ENDS) for value in rows[name]])
+    plot.add_axes(x, y, language.say(SPEED), "Cw [kg/m]")
+    for method, ink in inks.items():
+        _add_curve(plot, x, y, rows.filter(method=method), ink)
+    return plot.to_svg(caption)
+
+
+def _add_curve(plot: Plot, x: Scale, y: Scale, rows: pl.DataFrame, ink: str) -> None:
+    """Add what a method makes of a tow: band, line, interval at declared speed and run points."""
     line, points, declared = (
         rows.filter(kind=kind).to_dicts() for kind in ("line", "point", "declared")
     )
-    plot = Plot(language, width, height)
-    x = plot.fit_x([row["speed_m_s"] for row in line + points])
-    y = plot.fit_y([row.get(name) for row in line + points for name in ("cw_kg_m", *CW_ENDS)])
-    plot.add_axes(x, y, language.say(SPEED), "Cw [kg/m]")
-    band = [row for row in line if row.get("cw_lo_kg_m") is not None]
+    band = [row for row in line if row["cw_lo_kg_m"] is not None]
     plot.add_band(
         [x(row["speed_m_s"]) for row in band],
         [y(row["cw_lo_kg_m"]) for row in band],
         [y(row["cw_hi_kg_m"]) for row in band],
+        ink,
     )
     through = [(x(row["speed_m_s"]), y(row["cw_kg_m"])) for row in line]
-    plot.add_line(through, "currentColor", style={"stroke-width": 2})
+    plot.add_line(through, ink, style={"stroke-width": 2})
     for row in declared:
         if row["cw_lo_kg_m"] is not None:
             low, high = y(row["cw_lo_kg_m"]), y(row["cw_hi_kg_m"])
             is_dashed = row["interval"] != COMPLETE
-            plot.add_interval(x(row["speed_m_s"]), low, high, len(INKS) - 1, dashed=is_dashed)
+            plot.add_interval(x(row["speed_m_s"]), low, high, ink, dashed=is_dashed)
+    language = plot.language
     for row in points:
-        tip = _write_tip(language, row, "run", "speed_m_s", "cw_kg_m")
-        kind = int(row["direction"] < 0)
-        plot.add_point(x(row["speed_m_s"]), y(row["cw_kg_m"]), kind, tip, filled=row["used"])
-    if points:
-        plot.add_legend(
-            {0: language.say(words.name_direction(1)), 1: language.say(words.name_direction(-1))}
+        tip = language.say(say("run {run}: {speed_m_s} m/s, {cw_kg_m} kg/m")).format(
+            run=row["run"],
+            speed_m_s=language.write("speed_m_s", row["speed_m_s"]),
+            cw_kg_m=language.write("cw_kg_m", row["cw_kg_m"]),
         )
-    return plot.to_svg(caption)
+        kind = int(row["direction"] < 0)
+        at, up = x(row["speed_m_s"]), y(row["cw_kg_m"])
+        plot.add_point(at, up, kind, tip, ink=ink, filled=row["used"])
 
 
 def draw_scatter(
@@ -228,9 +256,12 @@ def draw_scatter(
     """
     known = tows.drop_nulls([quantity, explaining])
     every = [*known[quantity], *known[ends[0]], *known[ends[1]]]
+    crews = [
+        LegendEntry.from_kind(language.name_crew(crew), kind) for crew, kind in CREW_KINDS.items()
+    ]
     panels = []
     for method in known["method"].unique(maintain_order=True):
-        plot = Plot(language, 380, 290)
+        plot = Plot(language, 380, 290, legend=crews)
         x, y = plot.fit_x(known[explaining], bulk=True), plot.fit_y(every, bulk=True)
         named = language.name_method(method)
         plot.add_axes(x, y, language.get_title(explaining), language.get_title(quantity))
@@ -241,7 +272,6 @@ def draw_scatter(
             plot.add_line(list(zip(at, map(y, of_class["y"]), strict=True)), GREY)
         for row in known.filter(method=method).to_dicts():
             _add_tow(plot, x, y, row, quantity, ends, explaining)
-        plot.add_legend({CREW_KINDS[crew]: language.name_crew(crew) for crew in CREW_KINDS})
         picture = plot.to_svg(f"{caption}: {named}")
         panels.append(Markup("<div><b>{}</b>{}</div>").format(named, picture))
     return Markup('<div class="panels">{}</div>').format(Markup("").join(panels))
@@ -267,7 +297,7 @@ def _add_tow(
     if low is not None:
         is_dashed = row["interval"] != COMPLETE
         reach = plot.top if high is None else y(high)  # no upper end: to the edge
-        plot.add_interval(at, y(low), reach, kind, dashed=is_dashed)
+        plot.add_interval(at, y(low), reach, get_ink(kind), dashed=is_dashed)
     tip = f"{row['label']} · {_write_tip(plot.language, row, explaining, quantity)}"
     plot.add_point(at, up, kind, tip, filled=not row["beyond_curve"], page=row["page"])
     if row["cw_outside"] or not y.low <= row[quantity] <= y.high:
@@ -285,7 +315,8 @@ def draw_number(language: Language, line: Row, caption: str) -> Markup:
 
     Args:
         language: of what is written.
-        line: of `read_answers`.
+        line: with both numbers, their intervals and whether these hold the log's error, and
+            `peers`: Cw of the other boats of its type.
         caption: of the picture.
     """
     old = (line["old_cw_kg_m"], line["old_cw_lo_kg_m"], line["old_cw_hi_kg_m"])
@@ -318,12 +349,16 @@ def draw_number(language: Language, line: Row, caption: str) -> Markup:
 GAIN_ROW_PX: Final = 18
 GAIN_LABEL_PX: Final = 176
 """Room for the name of a crew."""
+MAX_BARS: Final = 45
+"""Crews in one picture: as many as can be read on a page of paper."""
 WITHIN_OPACITY: Final = 0.45
 """How a change within its uncertainty is drawn."""
 
 
 def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
     """Return a bar for every crew: what a race of two hours at equal power gains or loses.
+
+    More crews than a page of paper has room for take several pictures, on one scale.
 
     Args:
         language: of what is written.
@@ -332,52 +367,30 @@ def draw_gains(language: Language, lines: pl.DataFrame, caption: str) -> Markup:
     """
     known = lines.drop_nulls("gain_in_two_hours_s")
     rows = known.sort("gain_in_two_hours_s", "fsn_no", descending=[True, False])
-    if rows.is_empty():
-        return Markup()
-    plot = Plot(language, 480, GAIN_ROW_PX * rows.height + 70, GAIN_LABEL_PX, 16)
-    ends = [*rows["gain_in_two_hours_s"], 0.0]
-    x = fit_scale(ends, plot.left + 36, plot.right - 36)
-    plot.add_grid(x, language.say(SECONDS), signed=True)
-    for place, row in enumerate(rows.to_dicts()):
-        gain = row["gain_in_two_hours_s"]
-        y = plot.top + (place + 0.5) * GAIN_ROW_PX
-        crew = f"{row['name'] or row['fsn_no']} {row['rowers']}{row['crew_class']}"
-        written = language.write_number(gain, 0, "+")
-        opacity = WITHIN_OPACITY if row.get("exceeds_interval") is False else None
-        style = {"stroke-width": 0.7 * GAIN_ROW_PX, "stroke-opacity": opacity}
-        ink = INKS[1] if gain < 0 else INKS[0]
-        plot.add_path(f"M{x(0):.1f} {y:.1f}H{x(gain):.1f}", ink, f"{crew}: {written} s", style)
-        plot.add_text(GAIN_LABEL_PX - 6, y + 4, crew, "end", size=11)
-        side = -5 if gain < 0 else 5
-        plot.add_text(x(gain) + side, y + 4, written, "end" if gain < 0 else "start", size=10)
-    return plot.to_svg(caption)
+    ends_s = [*rows["gain_in_two_hours_s"], 0.0]
+    pictures = []
+    for part in rows.iter_slices(MAX_BARS):
+        plot = Plot(language, 480, GAIN_ROW_PX * part.height + 70, GAIN_LABEL_PX, 16)
+        x = fit_scale(ends_s, plot.left + 36, plot.right - 36)
+        plot.add_grid(x, language.say(SECONDS), signed=True)
+        for place, row in enumerate(part.to_dicts()):
+            _add_gain(plot, x, plot.top + (place + 0.5) * GAIN_ROW_PX, row)
+        pictures.append(plot.to_svg(caption))
+    return Markup("\n").join(pictures)
 
 
-def draw_shares(
-    language: Language, rows: pl.DataFrame, name: str, value: str, caption: str
-) -> Markup:
-    """Return a bar to the right for every row, the largest first.
-
-    Args:
-        language: of what is written.
-        rows: of one tow and method.
-        name: the column of codes that name the bars.
-        value: the column of their length, a share.
-        caption: of the picture.
-    """
-    known = rows.drop_nulls(value).sort(value, descending=True).to_dicts()
-    if not known:
-        return Markup()
-    row_px, left = 22, 190
-    plot = Plot(language, 480, row_px * len(known) + 20, left=left, top=0)
-    x = fit_scale([], left, plot.right - 50, including=[0.0, known[0][value] or 1.0])
-    for place, row in enumerate(known):
-        y = row_px * (place + 0.5) + 6
-        plot.add_text(left - 6, y + 4, language.write(name, row[name]), "end")
-        bar = f"M{x(0):.1f} {y:.1f}H{x(row[value]):.1f}"
-        plot.add_path(bar, INKS[0], style={"stroke-width": 14})
-        plot.add_text(x(row[value]) + 5, y + 4, language.write(value, row[value]), size=11)
-    return plot.to_svg(caption)
+def _add_gain(plot: Plot, x: Scale, y: float, row: Row) -> None:
+    """Add the bar of a crew, with its name and its seconds."""
+    gain_s = row["gain_in_two_hours_s"]
+    crew = f"{row['name'] or row['fsn_no']} {row['rowers']}{row['crew_class']}"
+    written = plot.language.write_number(gain_s, 0, "+")
+    opacity = WITHIN_OPACITY if row.get("exceeds_interval") is False else None
+    style = {"stroke-width": 0.7 * GAIN_ROW_PX, "stroke-opacity": opacity}
+    ink = INKS[1] if gain_s < 0 else INKS[0]
+    plot.add_path(f"M{x(0):.1f} {y:.1f}H{x(gain_s):.1f}", ink, f"{crew}: {written} s", style)
+    plot.add_text(GAIN_LABEL_PX - 6, y + 4, crew, "end", size=11)
+    side, anchor = (-5, "end") if gain_s < 0 else (5, "start")
+    plot.add_text(x(gain_s) + side, y + 4, written, anchor, size=10)
 
 
 # -- Traces -----------------------------------------------------------------------------------

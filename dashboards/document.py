@@ -56,11 +56,32 @@ _GLOBALS: Final = {
 }
 """What every template can use besides the methods of its document and its language."""
 
-_OF_DOCUMENT: Final = ("say", "table", "draw", "draw_each", "draw_traces", "language", "root")
+_OF_DOCUMENT: Final = (
+    "say",
+    "table",
+    "draw",
+    "draw_each",
+    "draw_traces",
+    "show_when",
+    "language",
+    "root",
+)
 _OF_LANGUAGE: Final = (
-    *("name_code", "name_method", "name_crew", "name_edition", "name_option", "name_choice"),
-    *("get_title", "get_unit", "write_seasons"),
-    *("write", "write_number", "write_percent", "write_change", "write_day", "write_plain"),
+    "name_code",
+    "name_method",
+    "name_crew",
+    "name_edition",
+    "name_option",
+    "name_choice",
+    "get_title",
+    "get_unit",
+    "write_seasons",
+    "write",
+    "write_number",
+    "write_percent",
+    "write_change",
+    "write_day",
+    "write_plain",
 )
 
 
@@ -153,26 +174,20 @@ class Document:
         return drawn
 
     def draw_each(self, chart: str, rows: pl.DataFrame, follows: str, *given: Any) -> Markup:
-        """Return a chart for each choice of selectors; charts that look alike are there once.
+        """Return a chart for each choice of a selector.
 
         Args:
             chart: see `draw`.
             rows: of all choices.
-            follows: columns that selectors choose by; charts are shared between values of the last.
+            follows: the column that the selector chooses by.
             given: what else the function takes.
         """
         if not self.pictures:
             return Markup()
-        keys = follows.split()
-        shared: dict[tuple[Any, ...], list[str]] = {}
-        for key, own in rows.partition_by(keys, as_dict=True, maintain_order=True).items():
-            drawn = self.draw(chart, own, *given)
-            shared.setdefault((*key[:-1], drawn), []).append(str(key[-1]))
         parts = []
-        for (*choices, drawn), last in shared.items():
-            values = {name: [str(one)] for name, one in zip(keys, choices, strict=False)}
-            when = self.show_when(values | {keys[-1]: last})
-            parts.append(Markup("<div{}>{}</div>").format(when, drawn))
+        for own in rows.partition_by(follows, maintain_order=True):
+            when = self.show_when({follows: [str(own[follows][0])]})
+            parts.append(Markup("<div{}>{}</div>").format(when, self.draw(chart, own, *given)))
         return Markup("\n").join(parts)
 
     def draw_traces(
@@ -244,39 +259,48 @@ class Document:
             look = _choose_look(frame[name], is_on_phones)
             title = self.language.say(titles[name])
             head.append((look, title))
-            cells.append(self._write_cells(frame[name], look))
+            about = frame["fsn_no"] if name == "name" and "fsn_no" in frame.columns else None
+            cells.append(self._write_cells(frame[name], look, about))
         lines = map("".join, zip(*cells, strict=True))
         made = get_template("table.html.j2").render(
             heads=head,
-            lines=self._choose_rows(frame, chosen_by, lines),
+            groups=self._group_rows(frame, chosen_by, lines),
             search=search,
             cards=cards,
             _=self.text,
         )
         return Markup(made)  # noqa: S704 - of escaped parts
 
-    def _choose_rows(
+    def _group_rows(
         self, frame: pl.DataFrame, follows: Sequence[str], lines: Iterable[str]
-    ) -> list[str]:
-        """Return rows with what they are chosen by; one that several methods share is there once.
+    ) -> list[tuple[Markup, list[str]]]:
+        """Return rows by what selectors show of them: the attributes of each group, and its rows.
 
-        A row whose choice is shown in a column of its own is shared with no other.
+        Groups that are alike for several values of the last selector are there once; one whose
+        choice is shown in a column of its own is shared with no other.
         """
+        groups: dict[tuple[str, ...], list[str]] = {}
         if not follows:
-            return [f"<tr>{line}</tr>" for line in lines]
+            return [(Markup(), list(lines))]
+        for key, line in zip(frame.select(follows).iter_rows(), lines, strict=True):
+            groups.setdefault(tuple(map(str, key)), []).append(line)
         shared: dict[tuple[Any, ...], list[str]] = {}
-        for *key, line in zip(*(frame[name] for name in follows), lines, strict=True):
-            values = shared.setdefault((*map(str, key[:-1]), line), [])
-            if str(key[-1]) not in values:
-                values.append(str(key[-1]))
-        rows = []
-        for (*choices, line), last in shared.items():
-            when = {name: [one] for name, one in zip(follows, choices, strict=False)}
-            rows.append(f"<tr{self.show_when(when | {follows[-1]: last})}>{line}</tr>")
-        return rows
+        for key, own in groups.items():
+            shared.setdefault((key[:-1], tuple(own)), []).append(key[-1])
+        chosen = []
+        for (first, own), last in shared.items():
+            values = {name: [one] for name, one in zip(follows, first, strict=False)}
+            chosen.append((self.show_when(values | {follows[-1]: last}), list(own)))
+        return chosen
 
-    def _write_cells(self, cells: pl.Series, look: str) -> list[str]:
-        """Return the cells of a column; `look` is their class."""
+    def _write_cells(self, cells: pl.Series, look: str, about: pl.Series | None) -> list[str]:
+        """Return the cells of a column.
+
+        Args:
+            cells: the column.
+            look: class of its cells.
+            about: the number of the boat that each cell names, if it does.
+        """
         attributes = f" class={look}" if look else ""
         known: dict[str, Markup] = {}  # the same text comes often
 
@@ -287,14 +311,18 @@ class Document:
                 known[value] = self._write_cell(cells.name, value)
             return known[value]
 
-        return [f"<td{attributes}>{write(value)}</td>" for value in cells.to_list()]
+        if about is None:
+            return [f"<td{attributes}>{write(value)}</td>" for value in cells.to_list()]
+        return [
+            f"<td{attributes}>{self._link_text('fsn_no', boat, write(name)) if name else ''}</td>"
+            for name, boat in zip(cells.to_list(), about.to_list(), strict=True)
+        ]
 
     def _write_cell(self, name: str, value: Any) -> Markup:
         if isinstance(value, Markup):
             return value
-        address = self._link(name, value)
-        if address:
-            return Markup('<a href="{}">{}</a>').format(address, value)
+        if self._link(name, value):
+            return self._link_text(name, value, value)
         if name == "messages":  # in Dutch and in English
             return escape(value[LANGUAGES.index(self.language.tag)])
         if name in HASHES:
@@ -302,6 +330,11 @@ class Document:
         if name == "boat_type":
             return escape(self.language.name_code(value or ""))
         return escape(self.language.write(name, value))
+
+    def _link_text(self, name: str, value: Any, text: str) -> Markup:
+        """Return a text as a link to what the value of a column leads to, if it leads anywhere."""
+        address = self._link(name, value)
+        return Markup('<a href="{}">{}</a>').format(address, text) if address else escape(text)
 
     def _link_to_page(self, name: str, value: Any) -> str:
         """Return the way to the page about the value of a column; empty where there is none."""

@@ -31,17 +31,21 @@ def get_title(text: str) -> str:
     return text.partition("\n")[0].lstrip("# ")
 
 
-def to_html(text: str) -> Markup:
-    """Return a document without its first line, its headings one level down.
+def to_html(text: str, levels_down: int = 1) -> Markup:
+    """Return a document without its first line.
 
     HTML in it is shown, not obeyed. Diagrams are left out: a script that draws them is large.
+
+    Args:
+        text: the document, in Markdown.
+        levels_down: how many levels its headings are lower on the page.
     """
     reader = _get_reader()
     below_title = text.partition("\n")[2]
     tokens = [token for token in reader.parse(below_title) if token.info != "mermaid"]
     for token in tokens:
         if token.type in ("heading_open", "heading_close"):
-            token.tag = f"h{int(token.tag[1:]) + 1}"
+            token.tag = f"h{int(token.tag[1:]) + levels_down}"
         _redirect_links(token.children or (), LINKS)
     html = reader.renderer.render(tokens, reader.options, {})
     scrolled = html.replace("<table>", f"{_SCROLLED}<table>").replace("</table>", "</table></div>")

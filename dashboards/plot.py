@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, floor, log10
 from types import MappingProxyType
-from typing import Final
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 from markupsafe import Markup, escape
@@ -19,15 +19,21 @@ from dashboards.language import Language
 INKS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "currentColor")
 """Colour of each kind of mark, by its number."""
 
+
+def get_ink(kind: int) -> str:
+    """Return the colour of a kind of mark."""
+    return INKS[kind % len(INKS)]
+
+
 SHAPES: Final = (
-    "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0z",  # circle
-    "M-3.6 -3.6h7.2v7.2h-7.2z",  # square
-    "M0 -4.8L4.6 3.4H-4.6z",  # triangle
-    "M0 -5.2L4.4 0L0 5.2L-4.4 0z",  # diamond
-    "M-1.6 -4.6h3.2v3h3v3.2h-3v3h-3.2v-3h-3v-3.2h3z",  # cross
-    "M0 4.8L4.6 -3.4H-4.6z",  # triangle upside down
+    "m-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0z",  # circle
+    "m-3.6 -3.6h7.2v7.2h-7.2z",  # square
+    "m0 -4.8l4.6 8.2h-9.2z",  # triangle
+    "m0 -5.2l4.4 5.2l-4.4 5.2l-4.4 -5.2z",  # diamond
+    "m-1.6 -4.6h3.2v3h3v3.2h-3v3h-3.2v-3h-3v-3.2h3z",  # cross
+    "m0 4.8l4.6 -8.2h-9.2z",  # triangle upside down
 )
-"""Path of each kind of mark, in pixels about its place."""
+"""Path of each kind of mark, in pixels from its place."""
 
 GREY: Final = "#888888"
 CHARACTER_WIDTH_PX: Final = 6.6
@@ -110,19 +116,36 @@ def fit_scale(
 
 
 LEGEND_ROW_PX: Final = 18
+
+
+class LegendEntry(NamedTuple):
+    """What a mark means: its name, the kind of its shape (None: a line) and its colour."""
+
+    name: str
+    kind: int | None
+    ink: str
+
+    @classmethod
+    def from_kind(cls, name: str, kind: int) -> Self:
+        """Return the entry of a kind of mark, in its own colour."""
+        return cls(name, kind, get_ink(kind))
+
+
 NO_STYLE: Final[Mapping[str, str | float | None]] = MappingProxyType({})
 
 
-def _place_legend(names: Mapping[int, str], width: float) -> list[tuple[str, float, int]]:
-    """Return each name with its place [px] on a row of the legend, and the row."""
+def _place_legend(
+    legend: Sequence[LegendEntry], width: float
+) -> list[tuple[LegendEntry, float, int]]:
+    """Return each entry with its place [px] on a row of the legend, and the row."""
     placed = []
     x, row = 0.0, 0
-    for name in names.values():
-        name_width = CHARACTER_WIDTH_PX * len(name) + 30
-        if x and x + name_width > width - 40:
+    for entry in legend:
+        entry_width = CHARACTER_WIDTH_PX * len(entry.name) + 30
+        if x and x + entry_width > width - 40:
             x, row = 0.0, row + 1
-        placed.append((name, x, row))
-        x += name_width
+        placed.append((entry, x, row))
+        x += entry_width
     return placed
 
 
@@ -133,7 +156,7 @@ class Plot:
         language: of the numbers on the axes.
         width, height: of the whole picture [px].
         left, top: room for labels [px].
-        legend: names of the marks, if several rows of them are to have room.
+        legend: what marks mean, on lines of their own at the top.
     """
 
     def __init__(
@@ -143,9 +166,9 @@ class Plot:
         height: int = 300,
         left: int = 52,
         top: int = 44,
-        legend: Mapping[int, str] | None = None,
+        legend: Sequence[LegendEntry] = (),
     ) -> None:
-        placed = _place_legend(legend or {}, width - 10)
+        placed = _place_legend(legend, width - 10)
         extra = LEGEND_ROW_PX * max((row for _, _, row in placed), default=0)
         height += extra
         self.language = language
@@ -153,6 +176,8 @@ class Plot:
         self.left, self.top = left, top + extra
         self.right, self.bottom = width - 10, height - 40
         self._marks: list[str] = []
+        self._has_links = False
+        self._add_legend(placed)
 
     def fit_x(
         self,
@@ -238,24 +263,42 @@ class Plot:
         self.add_text((self.left + self.right) / 2, self.height - 6, title, "middle")
 
     def add_point(
-        self, x: float, y: float, kind: int, tip: str = "", *, filled: bool = True, page: str = ""
+        self,
+        x: float,
+        y: float,
+        kind: int,
+        tip: str = "",
+        *,
+        ink: str = "",
+        filled: bool = True,
+        page: str = "",
     ) -> None:
-        """Add a mark of a kind; one that does not count is open, one with a page leads to it."""
-        ink = INKS[kind % len(INKS)]
-        fill, shape = ink if filled else "none", SHAPES[kind % len(SHAPES)]
-        mark = (
-            f'<path d="{shape}" transform="translate({x:.1f} {y:.1f})" fill="{fill}" '
-            f'stroke="{ink}"><title>{escape(tip)}</title></path>'
-        )
-        self._marks.append(f'<a href="{escape(page)}">{mark}</a>' if page else mark)
+        """Add a mark.
+
+        Args:
+            x, y: its place [px].
+            kind: of its shape, and of its colour where no ink is named.
+            tip: what pointing at it shows.
+            ink: its colour.
+            filled: whether it counts; one that does not is open.
+            page: where it leads to.
+        """
+        colour = ink or get_ink(kind)
+        fill, shape = colour if filled else "none", SHAPES[kind % len(SHAPES)]
+        end = f"><title>{escape(tip)}</title></path>" if tip else "/>"
+        mark = f'<path d="M{x:.1f} {y:.1f}{shape}" fill="{fill}" stroke="{colour}"{end}'
+        if page:
+            self._has_links = True
+            mark = f'<a href="{escape(page)}" aria-label="{escape(tip)}">{mark}</a>'
+        self._marks.append(mark)
 
     def add_interval(
-        self, x: float, low: float, high: float, kind: int, *, dashed: bool = False
+        self, x: float, low: float, high: float, ink: str, *, dashed: bool = False
     ) -> None:
         """Add a bar from low to high [px]; one that leaves out a part of it is dashed."""
         self.add_path(
             f"M{x:.1f} {low:.1f}V{high:.1f}",
-            INKS[kind % len(INKS)],
+            ink,
             style={"stroke-width": 2, "stroke-dasharray": "3 3" if dashed else None},
         )
 
@@ -278,26 +321,32 @@ class Plot:
         x, y = whole[0]
         self.add_path(f"M{x / parts:g} {y / parts:g}l{moves}", ink, style=style)
 
-    def add_band(self, x: Sequence[float], low: Sequence[float], high: Sequence[float]) -> None:
-        """Add the area between two lines."""
+    def add_band(
+        self, x: Sequence[float], low: Sequence[float], high: Sequence[float], ink: str = GREY
+    ) -> None:
+        """Add the area between two lines, in a light shade of an ink."""
         above = list(zip(x, low, strict=True))
         below = list(zip(reversed(x), reversed(high), strict=True))
-        self.add_line([*above, *below], "none", style={"fill": GREY, "fill-opacity": 0.22})
+        self.add_line([*above, *below], "none", style={"fill": ink, "fill-opacity": 0.22})
 
     def add_group(self, attributes: str, marks: str) -> None:
         """Add marks, as SVG, that are shown together."""
         self._marks.append(f"<g{attributes}>{marks}</g>")
 
-    def add_legend(self, names: Mapping[int, str]) -> None:
-        """Add what each kind of mark is, on lines of their own at the top."""
-        for kind, (name, x, row) in zip(names, _place_legend(names, self.right), strict=True):
-            y = LEGEND_ROW_PX * row
-            self.add_point(self.left + x, y + 10, kind)
-            self.add_text(self.left + x + 8, y + 14, name)
+    def _add_legend(self, placed: Sequence[tuple[LegendEntry, float, int]]) -> None:
+        for entry, x, row in placed:
+            left, y = self.left + x, LEGEND_ROW_PX * row + 10
+            if entry.kind is None:
+                line = f"M{left - 6:.1f} {y}h12"
+                self.add_path(line, entry.ink, style={"stroke-width": 3})
+            else:
+                self.add_point(left, y, entry.kind, ink=entry.ink)
+            self.add_text(left + 9, y + 4, entry.name)
 
     def to_svg(self, caption: str = "") -> Markup:
         """Return the picture; a screen reader says its caption, and skips one without."""
-        label = f'role="img" aria-label="{escape(caption)}"' if caption else 'aria-hidden="true"'
+        role = "group" if self._has_links else "img"  # an image has no parts that can be reached
+        label = f'role="{role}" aria-label="{escape(caption)}"' if caption else 'aria-hidden="true"'
         return Markup(  # noqa: S704 - texts were escaped
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
             f'{label} fill="currentColor" font-family="Open Sans, sans-serif" '

@@ -25,6 +25,16 @@ MIN_HEADING_WIDTH: Final = 9
 MIN_TEXT_WIDTH: Final = 16
 """Characters of a column of texts before they are broken over several lines."""
 
+BOLD, GREEN, YELLOW, RED = "1", "32", "33", "31"
+"""Codes of ANSI for the look of a text."""
+
+COLOUR_BY_VERDICT: Final = {
+    **dict.fromkeys(("good", "equal"), GREEN),
+    **dict.fromkeys(("look", "open"), YELLOW),
+    **dict.fromkeys(("tow_again", "differ"), RED),
+}
+"""Colour of a statement, by the code of its verdict; the words say the same."""
+
 INDENT: Final = "  "
 NOTHING: Final = "-"
 """What an empty cell of a table shows."""
@@ -33,19 +43,34 @@ NUMBER: Final = re.compile(r"[-+\u2212]?[0-9]+([.,][0-9]+)?(\u00a0[%sN])?|-")
 """A cell that is aligned to the right."""
 
 
-def to_text(html: str, *, folded: bool = False, width: int | None = None) -> str:
+def to_text(
+    html: str, *, folded: bool = False, width: int | None = None, coloured: bool = False
+) -> str:
     """Return a document as text.
 
     Args:
         html: the document.
         folded: whether to write what is folded on its page, too.
         width: characters on a line; as many as the terminal has when left out.
+        coloured: whether headings are bold and verdicts have a colour, by codes of ANSI.
     """
     if width is None:
         is_terminal = sys.stdout.isatty()
         width = shutil.get_terminal_size().columns if is_terminal else UNLIMITED_WIDTH
-    parts = [_write(block, width) for block in read_blocks(html, folded=folded)]
+    parts = []
+    for block in read_blocks(html, folded=folded):
+        text = _write(block, width)
+        parts.append(_colour(block, text) if coloured else text)
     return re.sub(r"\n{3,}", "\n\n", "\n".join(parts)).strip()
+
+
+def _colour(block: Block, text: str) -> str:
+    """Return the lines of a block in bold or in a colour, where it is a heading or a verdict."""
+    verdict = block.said.partition(" ")[2]
+    code = BOLD if block.kind == "heading" else COLOUR_BY_VERDICT.get(verdict)
+    if code is None:
+        return text
+    return "\n".join(f"\x1b[{code}m{line}\x1b[0m" if line else "" for line in text.split("\n"))
 
 
 def _write(block: Block, width: int) -> str:

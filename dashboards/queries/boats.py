@@ -11,7 +11,8 @@ import polars as pl
 
 from dashboards.queries.results import Data, Results
 from pipeline.method.options import find_basis
-from pipeline.method.variant import differences
+from pipeline.method.variant import Difference, differences
+from pipeline.register.register import draft_name
 from pipeline.tables.display import STEP_CHANGE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import answers, season_faults, select_own_races
@@ -63,6 +64,8 @@ def read_boat(
         return rows.filter(pl.col("method").is_in(shown)) if is_per_method else rows
 
     boat = results.select_boat("boats", fsn_no).row(0, named=True)
+    is_draft = pl.col("edition").str.starts_with(DRAFT)
+    of_editions = ~is_draft | pl.col("edition").is_in([draft_name(name) for name in shown])
     curves = own("curves").with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
@@ -71,13 +74,15 @@ def read_boat(
     tows = dict(curves.select("tow_id", "tow").rows())
     crews = read_answers(results, chosen_edition).get(fsn_no, []) if tows else []
     size = pl.col("cw_effect_ratio").log().abs()
-    budget = own("uncertainty_budget").filter(pl.col("u_ratio") > 0)
+    budget = own("uncertainty_budget").filter(pl.col("u_ratio") >= NEGLIGIBLE_CHANGE)
     return {
         "methods": [name for name in shown if name in curves["method"].unique()],
         "boat": boat,
         "answers": crews,
         "edition": chosen_edition,
-        "register": _leave_out_repeated_drafts(results.select_boat("register", fsn_no)),
+        "register": _leave_out_repeated_drafts(
+            results.select_boat("register", fsn_no).filter(of_editions)
+        ),
         "tows": results.select_boat("tows", fsn_no).sort("tow_date", "tow_id"),
         "curves": curves,
         "steps": _tabulate_steps(own_steps(results, fsn_no, shown)),
@@ -89,7 +94,7 @@ def read_boat(
         "options": own("option_effects").sort(size, descending=True, maintain_order=True),
         "checks": own("flagged"),
         "hand_windows": results.select_boat("hand_windows", fsn_no),
-        "lineage": results.select_boat("lineage", fsn_no),
+        "lineage": results.select_boat("lineage", fsn_no).filter(of_editions),
         "set_aside": results.views.frame(_SET_ASIDE, fsn_no, boat["name"] or fsn_no).to_dicts(),
         "drawn": {
             "curve": pl.concat(figure.values(), how="diagonal_relaxed"),
@@ -144,8 +149,8 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     Returns:
         Rows of `warehouse.queries.answers.answers` with `races`, `faults`, `causes`, `bars` (see
         `measure_bars`), `cw_verdict` (same, lower or higher), `has_moved` since the tow before,
-        `peers` (Cw of the other boats of its type and class), the interval of the old number, and
-        `decided_steps`: those of which nothing is put to the vote.
+        `peers` (Cw of the other boats of its type and class), the interval of the old number,
+        `decided_steps`: those of which nothing is put to the vote, and `Results.objection`.
     """
     if edition in results.answers:
         return results.answers[edition]
@@ -165,7 +170,7 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     by_type: dict[tuple[str, str], list[Row]] = {}
     for line in lines.drop_nulls(["cw_kg_m", "boat_type"]).to_dicts():
         by_type.setdefault((line["boat_type"], line["crew_class"]), []).append(line)
-    decided_steps = find_decided_steps(results, previous, edition)
+    decided_steps = find_decided_steps(find_changed_options(results, previous, edition))
     by_boat: dict[str, list[Row]] = {}
     for line in lines.to_dicts():
         own = races_by_crew.get(tuple(line[name] for name in CREW), races.head(0)).to_dicts()
@@ -175,20 +180,33 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
         others = [other for other in of_type if other["fsn_no"] != line["fsn_no"]]
         answer["peers"] = [other["cw_kg_m"] for other in others]
         answer["decided_steps"] = decided_steps
+        answer["objection"] = results.objection
         by_boat.setdefault(line["fsn_no"], []).append(answer)
     results.answers[edition] = by_boat
     return by_boat
 
 
-def find_decided_steps(results: Results, old: str | None, new: str) -> list[str]:
-    """Return the steps between two drafts of which all that differs was decided before.
+def find_changed_options(results: Results, old: str | None, new: str) -> list[Difference]:
+    """Return the options that a draft has otherwise than what it is compared with.
 
-    Of an edition everything was decided: none is returned.
+    Nothing of an edition is put to the vote: none is returned.
+
+    Args:
+        results: the tables.
+        old: an edition or draft; one whose method is not known counts as the first method.
+        new: an edition or draft.
     """
-    if old is None or not (old.startswith(DRAFT) and new.startswith(DRAFT)):
+    if old is None or not new.startswith(DRAFT):
         return []
     known = KnownMethods.from_store(results.views.store)
-    changed = differences(known.get(new.removeprefix(DRAFT)), known.get(old.removeprefix(DRAFT)))
+    of_editions = dict(results.views.table("editions").select("edition", "method").rows())
+    old_method = old.removeprefix(DRAFT) if old.startswith(DRAFT) else of_editions.get(old)
+    before = known.get(old_method or results.methods[0])
+    return list(differences(known.get(new.removeprefix(DRAFT)), before))
+
+
+def find_decided_steps(changed: Sequence[Difference]) -> list[str]:
+    """Return the steps in which all that differs was decided before."""
     is_decided: dict[str, bool] = {}
     for one in changed:
         status = find_basis(one.step, one.option, one.after).status

@@ -36,7 +36,7 @@ def read_method(results: Results, name: str) -> Data:
             other: get_method_page(results, other) for other in results.methods if other != name
         },
         "steps": _explain_steps(shown, changed, ladder),
-        "voted": _group_by_status(changed),
+        "voted": group_by_status(changed),
         "validity": shown.validity,
         "certain": _measure_certainty(results, shown),
         "worked": _work_through(results, name, ladder),
@@ -97,7 +97,7 @@ def _get_first_option(method: Method, step: str) -> Row:
     return {"option": option, "after": value, "basis": find_basis(step, option, value)}
 
 
-def _group_by_status(changed: Sequence[Difference]) -> dict[str, dict[str, list[Row]]]:
+def group_by_status(changed: Sequence[Difference]) -> dict[str, dict[str, list[Row]]]:
     """Return what changes by status, and of each step its options."""
     found: dict[str, dict[str, list[Row]]] = {"decided": {}, "proposed": {}, "inferred": {}}
     for one in map(describe_option, changed):

@@ -2,25 +2,29 @@
 
 import datetime as dt
 from collections import Counter
+from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
 
 from dashboards.guides import guide_file
-from dashboards.queries.boats import list_causes
+from dashboards.queries.boats import find_changed_options, find_decided_steps, list_causes
+from dashboards.queries.methods import get_method_page, group_by_status
 from dashboards.queries.results import Data, Results
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGES
 from pipeline.races.race import FATIGUE_REFERENCE
 from pipeline.studies.ladder import START
 from pipeline.tables.display import STEP_FACTOR
-from pipeline.tables.keys import SEASON_LEVEL
+from pipeline.tables.keys import LINE, SEASON_LEVEL
 from pipeline.tables.row import Row
-from warehouse.editions.compare import causes_of
+from warehouse.editions.compare import causes_of, parts_of
 from warehouse.queries.answers import race_chances
 from warehouse.queries.change_report import last_changes
+from warehouse.queries.views import DRAFT
 from warehouse.queries.years import summarise_years
 from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_path
+from warehouse.store.methods import KnownMethods
 
 MONTHS_AHEAD: Final = dt.timedelta(days=365)
 """How far the due list looks ahead."""
@@ -30,6 +34,9 @@ SHEETS: Final = (CSV, XLSX)
 
 SOUND_VERDICTS: Final = ("sound", "estimated")
 """Verdicts on an instrument that need no look."""
+
+WOULD_NOT_SHOW: Final = "would not show"
+"""The verdict on an instrument of which a fault of the usual size would not be found."""
 
 
 # -- Start ------------------------------------------------------------------------------------
@@ -266,8 +273,7 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
     spread = name_ends(results.rows("reproducibility"))
     diagnosis = views.ask("season_diagnosis")
     is_level = pl.col("instrument") == SEASON_LEVEL
-    is_in_doubt = ~pl.col("verdict").is_in(SOUND_VERDICTS)
-    is_usual_level = is_level & (pl.col("verdict") != "alarm")
+    is_found = ~pl.col("verdict").is_in([*SOUND_VERDICTS, WOULD_NOT_SHOW])
     eras = results.rows("era_shifts").filter(boat_type="all").drop_nulls("shift_ratio")
     return {
         "method": chosen,
@@ -276,7 +282,8 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
         "lacking": [year for year in between if year not in known],
         "links": parts,
         "parts": parts.filter(pl.col("season").is_in(divided["season"].implode())),
-        "diagnosis": diagnosis.filter(is_in_doubt & ~is_usual_level).with_columns(part),
+        "diagnosis": diagnosis.filter(is_found).with_columns(part),
+        "unseen": list_unseen_faults(diagnosis.filter(~is_level, method=chosen)),
         "levels": diagnosis.filter(is_level),
         "spread": spread.filter(pl.col("scope") != "all"),
         **sum_up_repeats(spread, chosen),
@@ -289,6 +296,33 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
         "chosen": {"method": chosen},
         **read_season_changes(results),
     }
+
+
+def list_unseen_faults(diagnosis: pl.DataFrame) -> list[Row]:
+    """Return of which instruments a fault would not show, and in which seasons.
+
+    Args:
+        diagnosis: rows of `season_diagnosis` of a method.
+
+    Returns:
+        `instrument`, and `spans`: the first and last of seasons in a row.
+    """
+    hidden = diagnosis.filter(verdict=WOULD_NOT_SHOW).sort("instrument", "season")
+    return [
+        {"instrument": instrument, "spans": _join_years(own["season"].unique().sort().to_list())}
+        for (instrument,), own in hidden.group_by("instrument", maintain_order=True)
+    ]
+
+
+def _join_years(years: Sequence[int]) -> list[tuple[int, int]]:
+    """Return the first and last of years in a row."""
+    spans: list[tuple[int, int]] = []
+    for year in years:
+        if spans and spans[-1][1] == year - 1:
+            spans[-1] = (spans[-1][0], year)
+        else:
+            spans.append((year, year))
+    return spans
 
 
 def name_ends(spread: pl.DataFrame) -> pl.DataFrame:
@@ -346,10 +380,50 @@ def read_changes(results: Results, edition: str | None = None) -> Data:
         "lines": changed,
         "changed": sum_up_changes(own),
         "vote": sum_up_gains(own),
+        "motion": read_motion(results, own),
         "names": names,
         "races": results.views.race_days(),
         "chosen": {"to_edition": chosen},
     }
+
+
+def read_motion(results: Results, lines: pl.DataFrame) -> Data | None:
+    """Return what a vote for a draft is about; None where nothing is put to the vote.
+
+    Args:
+        results: the tables.
+        lines: rows of `Results.line_changes` of two editions.
+
+    Returns:
+        `method`, its `titles` by language and its `page`; the options that change by who decided
+        them (`voted`) and the `validity` of a tow; and, over the lines that change, the median
+        factor on Cw of all that was `decided` before, and of all that is `proposed` now.
+    """
+    if lines.is_empty():
+        return None
+    new = lines["to_edition"][0]
+    changed = find_changed_options(results, lines["from_edition"][0], new)
+    if not changed:
+        return None
+    method = KnownMethods.from_store(results.views.store).get(new.removeprefix(DRAFT))
+    is_decided = pl.col("step").is_in(find_decided_steps(changed)).fill_null(value=False)
+    parts = parts_of(lines.filter(change="changed"))
+    return {
+        "method": method.name,
+        "titles": {tag: method.get_title(tag) for tag in LANGUAGES},
+        "page": get_method_page(results, method.name),
+        "voted": group_by_status(changed),
+        "validity": method.validity,
+        "decided": _measure_factor(parts.filter(is_decided)),
+        "proposed": _measure_factor(parts.filter(~is_decided)),
+    }
+
+
+def _measure_factor(parts: pl.DataFrame) -> float | None:
+    """Return the median over lines of what these parts of their change multiply to."""
+    of_lines = parts.group_by(LINE, maintain_order=True).agg(pl.col("factor").product())
+    median: float | None = of_lines.select(pl.col("factor").median()).item()
+    return median
 
 
 def read_race(results: Results, race: str, day: dt.date) -> Data:

@@ -18,7 +18,12 @@ from pipeline.register.register import draft_name
 from pipeline.tables.row import Row
 from warehouse.editions.compare import causes_of
 from warehouse.queries.answers import compared, replayed
-from warehouse.queries.documents import certificate_lines, draw_line_curve
+from warehouse.queries.documents import (
+    SMOOTH_SPEEDS,
+    SPEEDS,
+    certificate_lines,
+    compute_line_curve,
+)
 from warehouse.queries.views import Views
 
 MAX_CREWS_NAMED: Final = 10
@@ -55,7 +60,7 @@ def read_certificates(
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line in it.
     """
-    about = views.about()
+    about, objection = views.about(), Results(views).objection
     made = []
     for line in certificate_lines(views, edition, fsn_no):
         whose = f"{line['fsn_no']} {line['rowers']}{line['crew_class']}"
@@ -64,6 +69,7 @@ def read_certificates(
                 _describe_certificate(line, day or line["as_of"], site)
                 | {
                     "issuer": issuer,
+                    "objection": objection,
                     "made_by": line["code_version"] or about.get("code_version", ""),
                 }
             )
@@ -72,11 +78,11 @@ def read_certificates(
 
 def _describe_certificate(line: Row, day: dt.date, site: str) -> Data:
     """Return a line with its curve, the power that it asks, and the code that a phone reads."""
-    powers = draw_line_curve(line)
+    smooth = compute_line_curve(line, SMOOTH_SPEEDS)
     ends = {name: line[name] for name in ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")}
     declared = pl.DataFrame([{"speed_m_s": line["declared_speed_m_s"], **ends, "kind": "declared"}])
-    interval = COMPLETE if line["log_known"] else RUNS_ALONE
-    curve = pl.concat([powers.with_columns(kind=pl.lit("line")), declared], how="diagonal_relaxed")
+    interval = COMPLETE if line["new_log_known"] else RUNS_ALONE
+    curve = pl.concat([smooth.with_columns(kind=pl.lit("line")), declared], how="diagonal_relaxed")
     until = line["valid_until"]
     is_expired = line["status"] == "expired" or (until is not None and until < day)
     return {
@@ -88,22 +94,22 @@ def _describe_certificate(line: Row, day: dt.date, site: str) -> Data:
         if is_expired
         else "valid",
         "measures": MEASURES,
-        "powers": powers,
-        "curve": curve.with_columns(interval=pl.lit(interval)),
+        "powers": compute_line_curve(line, SPEEDS),
+        "curve": curve.with_columns(
+            interval=pl.lit(interval), method=pl.lit(line["method"] or line["edition"])
+        ),
         "qr": _draw_qr(line, site),
     }
 
 
 def _draw_qr(line: Row, site: str) -> Markup:
-    """Return the code that leads to the boat's page, or holds what the search for a line takes."""
+    """Return the code that leads to the boat's page; nothing where the site has no address."""
     code = line["verification_code"]
-    if not code:
+    if not code or not site:
         return Markup()
     crew = f"{line['rowers']}{line['crew_class']}"
-    text = f"{line['edition']} {line['fsn_no']} {crew} {code}"
-    if site:
-        text = f"{site.rstrip('/')}/{boat_path(line['fsn_no'])}?code={code}#{crew}"
-    drawn = segno.make(text, micro=False).svg_inline(scale=4, border=1)
+    address = f"{site.rstrip('/')}/{boat_path(line['fsn_no'])}?code={code}#{crew}"
+    drawn = segno.make(address, micro=False).svg_inline(scale=4, border=1)
     return Markup(drawn)  # noqa: S704 - has no text in it
 
 
@@ -137,6 +143,7 @@ def read_proposal(
         )
     return {
         "letter": letter,
+        "objection": results.objection,
         "against": against,
         "proposals": proposals,
         "ballot": pl.DataFrame([one["effect"] for one in proposals], infer_schema_length=None),

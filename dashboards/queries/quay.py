@@ -21,10 +21,22 @@ AS_RATIO: Final = ("unusual_calibration", "log_not_linear")
 """Findings that observe a ratio with three decimals; other ratios are written in per cent."""
 
 SIGNED: Final = (
-    *("out_and_back_differ", "run_off_curve", "runs_disagree", "load_cell_off", "boat_changed"),
-    *("unlike_other_tows", "curve_change_unexplained", "differs_from_last", "change_explained"),
-    *("unlike_its_type", "pulled_askew", "heavier_after", "weight_changed", "length_changed"),
-    *("beam_changed", "bow_height_changed"),
+    "out_and_back_differ",
+    "run_off_curve",
+    "runs_disagree",
+    "load_cell_off",
+    "boat_changed",
+    "unlike_other_tows",
+    "curve_change_unexplained",
+    "differs_from_last",
+    "change_explained",
+    "unlike_its_type",
+    "pulled_askew",
+    "heavier_after",
+    "weight_changed",
+    "length_changed",
+    "beam_changed",
+    "bow_height_changed",
 )
 """Findings whose per cent has a sign."""
 
@@ -34,7 +46,10 @@ CURVES_COMPARED: Final = (*CHANGED, "differs_from_last", "change_explained")
 """Findings that compare the curve with that of the last tow."""
 
 INSTRUMENT_FINDINGS: Final = (
-    *("log2_differs", "unusual_calibration", "load_cell_off", "coarse_readings"),
+    "log2_differs",
+    "unusual_calibration",
+    "load_cell_off",
+    "coarse_readings",
 )
 """Findings about an instrument that may read otherwise all season."""
 

@@ -1,5 +1,6 @@
 """The tables of a data folder, read once for all documents that are made of them."""
 
+import datetime as dt
 from collections.abc import Mapping
 from functools import cache, cached_property
 from typing import Any, Final, TypeAlias
@@ -79,6 +80,17 @@ class Results:
     def boat_names(self) -> dict[str, str]:
         """The name of each boat that has one, by its number."""
         return dict(self.views.table("boats").select("fsn_no", "name").drop_nulls().rows())
+
+    @cached_property
+    def objection(self) -> Row:
+        """`to` whom a number can be objected to, `until` which day, and the `grounds`, if known."""
+        about = self.views.about()
+        until = about.get("objections_until")
+        return {
+            "to": about.get("objections_to", ""),
+            "until": dt.date.fromisoformat(until) if until else None,
+            "grounds": about.get("objection_grounds", ""),
+        }
 
     def rows(self, table: str) -> pl.DataFrame:
         """Return the rows of a table of the methods that are shown."""

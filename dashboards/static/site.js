@@ -14,15 +14,16 @@
   const isChosen = (part) => selects.every(({ name, value }) =>
     part.dataset[name] === undefined || part.dataset[name].split("|").includes(value));
 
+  const isShown = (row) => !row.hidden && !row.parentElement.hidden;
+
   function show() {
     selects = own();
     const chosen = selects.map(({ name }) => `[data-${name}]`).join();
     if (chosen) for (const part of all(chosen)) part.hidden = !isChosen(part);
     for (const table of all(".table")) {
       const words = table.querySelector("[type=search]")?.value ?? "";
-      const rows = all("tbody tr", table);
-      for (const row of rows) row.hidden = !isChosen(row) || !has(plain(row.textContent), words);
-      table.querySelector(".tools b").textContent = rows.filter((row) => !row.hidden).length;
+      for (const row of all("tbody tr", table)) row.hidden = !has(plain(row.textContent), words);
+      table.querySelector(".tools b").textContent = all("tbody tr", table).filter(isShown).length;
     }
     const isFirst = selects.every(({ name, value }) => first.get(name) === value);
     for (const said of all("main [data-said]")) said.classList.toggle("unseen", !isFirst && !said.closest(".answer"));
@@ -50,16 +51,15 @@
     const down = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
     for (const other of head.parentElement.cells) other.removeAttribute("aria-sort");
     head.setAttribute("aria-sort", down < 0 ? "descending" : "ascending");
-    const body = head.closest("table").tBodies[0];
     const { compare } = new Intl.Collator(lang, { numeric: true });
     const order = (a, b) => (a === "" || b === "" ? (a === "") - (b === "") : down * (typeof a === "number" && typeof b === "number" ? a - b : compare(a, b)));
-    body.append(...[...body.rows].map((row) => [value(row.cells[head.cellIndex]), row]).sort(([a], [b]) => order(a, b)).map(([, row]) => row));
+    for (const body of head.closest("table").tBodies) body.append(...[...body.rows].map((row) => [value(row.cells[head.cellIndex]), row]).sort(([a], [b]) => order(a, b)).map(([, row]) => row));
   }
 
   function download(table) { // a text that a spreadsheet would take for a formula is kept text
     const cell = (text) => (typeof text === "number" ? String(text).replace(".", DECIMAL)
       : `"${text.replace(/\u00ad/g, "").replace(/(^|[;,\t\r\n])(\s*)([=+\-@])/g, "$1$2'$3").replaceAll('"', '""')}"`);
-    const rows = all("tr", table).filter((row) => !row.hidden).map((row) => [...row.cells].map(value).map(cell).join(SEPARATOR));
+    const rows = all("tr", table).filter(isShown).map((row) => [...row.cells].map(value).map(cell).join(SEPARATOR));
     const href = URL.createObjectURL(new Blob([`\ufeff${rows.join("\r\n")}\r\n`], { type: "text/csv" }));
     Object.assign(document.createElement("a"), { href, download: `${document.title}.csv` }).click();
   }
@@ -118,7 +118,7 @@
   // A card, which a phone shows in place of a row, names what its cells hold.
   function label(table) {
     const titles = all("thead th", table).map((head) => head.textContent.replaceAll("\u00ad", ""));
-    for (const row of table.tBodies[0].rows) for (const cell of row.cells) cell.dataset.label = titles[cell.cellIndex];
+    for (const row of all("tbody tr", table)) for (const cell of row.cells) cell.dataset.label = titles[cell.cellIndex];
   }
 
   function start() {

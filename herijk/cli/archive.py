@@ -15,7 +15,10 @@ if TYPE_CHECKING:
     from warehouse.store.store import Store
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=("herijk init archief",),
+)
 @argument("directory", type=PATH, help="Folder to make.")
 @form_options
 def init(directory: Path) -> None:
@@ -33,7 +36,13 @@ def init(directory: Path) -> None:
     show_files(files, said)
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=(
+        "herijk simulate archief",
+        "herijk simulate archief --seasons 2009:2012 --world rough",
+    ),
+)
 @argument("directory", type=PATH, required=False, help="Folder to make.")
 @option("--seasons", type=Seasons(), default="2009:2018", help="Seasons, both ends included.")
 @option("--tows-per-season", type=click.IntRange(1, 1000), default=24, help="Tows in each.")
@@ -70,7 +79,10 @@ def simulate(
     show("simulated", made, ("archive", "truth"))
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=("herijk check archief",),
+)
 @argument(
     "archive",
     type=PATH,

@@ -16,20 +16,59 @@ if TYPE_CHECKING:
     from warehouse.store.store import Store
 
 BOAT_FIELDS: Final = (
-    *("simulated", "methods", "boat", "edition", "answers", "register", "tows", "curves", "steps"),
-    *("runs", "budget", "checks", "in_type", "repeat_pairs", "predicted", "options", "set_aside"),
+    "simulated",
+    "methods",
+    "boat",
+    "edition",
+    "answers",
+    "register",
+    "tows",
+    "curves",
+    "steps",
+    "runs",
+    "budget",
+    "checks",
+    "in_type",
+    "repeat_pairs",
+    "predicted",
+    "options",
+    "set_aside",
 )
 TYPE_FIELDS: Final = (
-    *("simulated", "method", "methods", "types", "differences", "reproducibility"),
+    "simulated",
+    "method",
+    "methods",
+    "types",
+    "differences",
+    "reproducibility",
 )
 TOW_FIELDS: Final = (
-    *("method", "simulated", "tow", "curve", "runs", "checks", "verdict", "redo"),
-    *("first_assessment", "ways_to_use", "lost", "own_before", "of_type"),
+    "method",
+    "simulated",
+    "tow",
+    "curve",
+    "runs",
+    "checks",
+    "verdict",
+    "redo",
+    "first_assessment",
+    "ways_to_use",
+    "lost",
+    "own_before",
+    "of_type",
 )
 """What JSON has of a boat, of types, and of a tow on the quay."""
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=(
+        "herijk audit FSN114",
+        'herijk audit "Razende Snol" --steps --method rebased',
+        "herijk audit Kromhoutwhaler Kuikensloep",
+        "herijk audit FSN114 --edition 2026-1",
+    ),
+)
 @argument(
     "names",
     nargs=-1,
@@ -130,7 +169,10 @@ def show_lineage(store: "Store", edition: str, name: str) -> None:
     show("lineage", vars(lineage(store, edition, name)), ("about", "lines"))
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=("herijk assess 2018-007",),
+)
 @argument("tow_id", metavar="TOW", help="Number of the tow in the list of the season.")
 @archive_option
 @data_option

@@ -18,12 +18,19 @@ if TYPE_CHECKING:
 out_option = option("--out", type=PATH, help="PDF to write, or a folder for it.")
 
 
-@click.group(cls=Group)
+@click.group(
+    cls=Group, examples=("herijk export certificate FSN114", "herijk export proposal rebased")
+)
 def export() -> None:
     """Write pages of the site, certificates or a proposal as files."""
 
 
-@export.command()
+@export.command(
+    examples=(
+        "herijk export certificate FSN114",
+        "herijk export certificate --edition 2026-1 --out brieven.pdf",
+    )
+)
 @argument(
     "boat", required=False, help="A boat by number or name; without it all boats of the edition."
 )
@@ -69,7 +76,7 @@ def certificate(
         _write(store, "certificate", made, name, title, out, views.simulated(chosen))
 
 
-@export.command()
+@export.command(examples=("herijk export pages --out site-2015 --as-of 2015-06-01",))
 @option("--out", type=PATH, required=True, help="Folder for them, new or of pages.")
 @data_option
 @as_of_option
@@ -86,7 +93,7 @@ def pages(out: Path, store: "Store", as_of: dt.date | None) -> None:
         click.echo(tell("{} files in {}; begin with index.html", made["files"], out))
 
 
-@export.command()
+@export.command(examples=("herijk export proposal rebased --against 2018-1",))
 @argument("methods", nargs=-1, required=True, help="Method proposed; several make a ballot.")
 @data_option
 @option("--against", default="concept-as-published", help="Edition that counts now, or a draft.")

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Final, NoReturn
 
 import click
+from click.shell_completion import get_completion_class
 
 from herijk.cli.archive import check, init, simulate
 from herijk.cli.audit import assess, audit
@@ -21,7 +22,7 @@ from herijk.cli.export import export
 from herijk.cli.methods import compare, methods
 from herijk.cli.registers import publish, register, seasons, verify
 from herijk.cli.running import rebuild, serve, workbench
-from herijk.cli.speaking import Group, option
+from herijk.cli.speaking import Command, Group, argument, option
 from pipeline.errors import HerijkError, unexpected
 from pipeline.messages import LANGUAGE, say, spoken, tell
 from warehouse.store.machine_faults import REASSURANCE, explain_machine_faults
@@ -31,7 +32,7 @@ SECTIONS: Final = {
     say("Look"): ("assess", "audit", "register", "seasons", "workbench"),
     say("Change the method"): ("methods", "compare"),
     say("Publish"): ("publish", "verify", "export"),
-    say("Run it as a service"): ("serve",),
+    say("Run it as a service"): ("serve", "completion"),
 }
 
 INTERRUPTED: Final = 130
@@ -67,9 +68,21 @@ def app() -> None:
     """Recomputes the history of the Dutch rowing-sloop register from its tow tests."""
 
 
+@click.command(
+    cls=Command,
+    examples=("herijk completion bash >> ~/.bashrc", "herijk completion zsh >> ~/.zshrc"),
+)
+@argument("shell", type=click.Choice(("bash", "zsh", "fish")), help="Shell that completes.")
+def completion(shell: str) -> None:
+    """Print what makes a shell complete commands and options with the Tab key."""
+    complete = get_completion_class(shell)
+    assert complete is not None, "click knows these shells"  # noqa: S101 - the type is wider
+    click.echo(complete(app, {}, "herijk", "_HERIJK_COMPLETE").source())
+
+
 for _command in (init, check, rebuild, simulate, assess, audit, register, seasons, workbench):
     app.add_command(_command)
-for _command in (methods, compare, publish, verify, export, serve):
+for _command in (methods, compare, publish, verify, export, serve, completion):
     app.add_command(_command)
 
 

@@ -23,7 +23,7 @@ METHOD_FIELDS: Final = ("method", "title", "description", "content_hash", "exten
 """What JSON has of a method."""
 
 
-@click.group(cls=Group, invoke_without_command=True)
+@click.group(cls=Group, invoke_without_command=True, examples=("herijk methods",))
 @data_option
 @form_options
 @click.pass_context
@@ -46,7 +46,7 @@ def methods(context: click.Context, store: "Store") -> None:
     show("methods", {"methods": rows}, ("methods",))
 
 
-@methods.command("show")
+@methods.command("show", examples=("herijk methods show rebased",))
 @method_argument
 @data_option
 @form_options
@@ -55,7 +55,7 @@ def show_method(name: str, store: "Store") -> None:
     show("method_file", _describe(store, name) | {"checked": ""}, METHOD_FIELDS)
 
 
-@methods.command()
+@methods.command(examples=("herijk methods check ours-2027.toml",))
 @method_argument
 @data_option
 @form_options
@@ -71,7 +71,7 @@ def _describe(store: "Store", name_or_file: str) -> dict[str, Any]:
     return describe_method(KnownMethods.from_store(store), name_or_file, LANGUAGE.get())
 
 
-@methods.command()
+@methods.command(examples=("herijk methods new ours-2027 --from rebased",))
 @argument("name", help="Name of the new method, for example ours-2027.")
 @option("--from", "base", default="rebased", help="Method that it begins from.")
 @data_option
@@ -95,7 +95,14 @@ def new(name: str, base: str, store: "Store") -> None:
     show_files([file], said)
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=(
+        "herijk compare as-published rebased",
+        "herijk compare 2018-1 concept-rebased",
+        "herijk compare rebased our-method.toml",
+    ),
+)
 @argument("old", help="An edition or draft, or a method by its name or file.")
 @argument("new", help="What it is compared with, of the same kinds.")
 @data_option

@@ -1,6 +1,7 @@
 """Options that several commands share, and how a result is printed."""
 
 import datetime as dt
+import os
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -138,7 +139,9 @@ def show(
         from dashboards.terminal import UNLIMITED_WIDTH, to_text
 
         is_wide = bool(click.get_current_context().meta.get(WIDE))
-        click.echo(to_text(html, folded=folded, width=UNLIMITED_WIDTH if is_wide else None))
+        width = UNLIMITED_WIDTH if is_wide else None
+        is_coloured = "NO_COLOR" not in os.environ  # and in a terminal: Click sees to that
+        click.echo(to_text(html, folded=folded, width=width, coloured=is_coloured))
 
 
 def _choose_rows(value: Any, chosen: Mapping[str, str]) -> Any:

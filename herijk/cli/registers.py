@@ -21,7 +21,15 @@ if TYPE_CHECKING:
     from warehouse.store.store import Store
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=(
+        "herijk register",
+        "herijk register 2026-1 --as-of 2026-06-01",
+        "herijk register --due",
+        "herijk register concept-rebased --years",
+    ),
+)
 @argument("edition", required=False, help="Edition or draft. Default: the newest.")
 @flag(
     "--due",
@@ -83,7 +91,13 @@ def _choose_method(store: "Store", edition: str | None) -> str | None:
     return KnownMethods.from_store(store).get(edition.removeprefix(draft_name(""))).name
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=(
+        "herijk seasons",
+        "herijk seasons --method rebased-2015",
+    ),
+)
 @data_option
 @option("--method", help="Method whose factors are shown. Default: the best that was applied.")
 @form_options
@@ -94,11 +108,16 @@ def seasons(store: "Store", method: str | None) -> None:
 
     if method is not None:
         KnownMethods.from_store(store).text(method)
-    fields = ("method", "simulated", "factors", "parts", "diagnosis")
+    fields = ("method", "simulated", "factors", "parts", "diagnosis", "unseen")
     show_results(store, "season_list", lambda results: pages.read_seasons(results, method), fields)
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=(
+        'herijk publish 2026-1 --valid-from 2026-05-08 --decision "ALV 8 mei" --method rebased',
+    ),
+)
 @argument("edition", help="Name of the new edition, for example 2026-1.")
 @option("--valid-from", type=Day(), required=True, help="Day from which it counts: 2026-05-08.")
 @option("--decision", required=True, help="Who decided it, and where.")
@@ -137,7 +156,10 @@ def publish(
     show("published", data, tuple(vars(made)))
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=("herijk verify",),
+)
 @data_option
 @option("--head", help="The seal of the last edition, from the minutes.")
 @form_options

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
     from warehouse.store.store import Store
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=("herijk rebuild --archive archief --data data",),
+)
 @archive_option
 @data_option
 @option(
@@ -59,7 +62,10 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
         raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=("herijk serve --archive archief --data data",),
+)
 @archive_option
 @data_option
 @option("--host", default="127.0.0.1", help="Address on which the site is served.")
@@ -86,7 +92,10 @@ def serve(archive: Path, store: "Store", host: str, port: int, may_start: bool) 
         serve_until_stopped(served, prepare_home(store), lambda line: click.echo(line, err=True))
 
 
-@click.command(cls=Command)
+@click.command(
+    cls=Command,
+    examples=("herijk workbench",),
+)
 @data_option
 @option(
     "--port",

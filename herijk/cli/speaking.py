@@ -13,9 +13,10 @@ from typing import Any, Final
 
 import click
 
-from pipeline.messages import CATALOGUES, DOMAIN, LANGUAGE, LANGUAGES, tell
+from pipeline.messages import CATALOGUES, DOMAIN, LANGUAGE, LANGUAGES, say, tell
 
 HELP: Final = "Show this message and exit."
+EXAMPLES: Final = say("Examples")
 
 Sections = Mapping[str, Sequence[str]]
 """Names of commands under the heading below which the overview lists them."""
@@ -60,10 +61,11 @@ argument = click.argument
 
 
 class Command(click.Command):
-    """A command that takes `--lang`."""
+    """A command that takes `--lang`, and whose help ends with examples."""
 
-    def __init__(self, *given: Any, **settings: Any) -> None:
+    def __init__(self, *given: Any, examples: Sequence[str] = (), **settings: Any) -> None:
         super().__init__(*given, **settings)
+        self.examples = examples
         self.params.append(
             click.Option(
                 ["--lang"],
@@ -72,6 +74,13 @@ class Command(click.Command):
                 help="Language. Default: that of the system.",
             )
         )
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the examples."""
+        super().format_epilog(ctx, formatter)
+        if self.examples:
+            with formatter.section(tell(EXAMPLES)), formatter.indentation():
+                formatter.write("".join(f"  {example}\n" for example in self.examples))
 
 
 class Group(Command, click.Group):

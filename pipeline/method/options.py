@@ -66,7 +66,7 @@ class Speed(Declared):
     correction: Literal["none", "prescribed", "estimated"] = _option(
         "proposed",
         say('P2015, "Meten van de sleepsnelheid"'),
-        but={"estimated": Basis("proposed", say("this project; appendix 4"))},
+        but={"estimated": Basis("proposed", say("this project; method-details, section 4"))},
     )
     factor: float = _option(
         "proposed",
@@ -87,7 +87,7 @@ class Force(Declared):
 
     ratio: float = _option(
         "proposed",
-        say("this project: a fault that was found, applied knowingly; appendix 4"),
+        say("this project: a fault that was found, applied knowingly; method-details, section 4"),
         1.0,
         0.8,
         1.25,
@@ -119,10 +119,10 @@ class Wind(Declared):
     behind: float = _option("proposed", say('P2015, "Windweerstand"'), 0.5, 0.0, 2.0)
     side: float = _option("proposed", say('P2015, "Dwarse tegenwind"'), 0.2, 0.0, 2.0)
     averaging_s: int = _option(
-        "proposed", say("this project: the vane swings; appendix 5"), 0, 0, 15
+        "proposed", say("this project: the vane swings; method-details, section 5"), 0, 0, 15
     )
     anemometer: Literal["as_read", "estimated"] = _option(
-        "proposed", say("this project: runs out and back; appendix 5"), "as_read"
+        "proposed", say("this project: runs out and back; method-details, section 5"), "as_read"
     )
 
 
@@ -133,14 +133,16 @@ class RunPoint(Declared):
         "decided",
         say("S2017"),
         but={
-            "ratio_of_means": Basis("proposed", say("this project: a noisy log; appendix 3")),
+            "ratio_of_means": Basis(
+                "proposed", say("this project: a noisy log; method-details, section 3")
+            ),
             "ratio_of_robust_means": Basis(
-                "proposed", say("this project: a noisy log, steering; appendix 3")
+                "proposed", say("this project: a noisy log, steering; method-details, section 3")
             ),
         },
     )
     inertia: Literal["none", "end_speeds"] = _option(
-        "proposed", say("this project; appendix 6"), "none"
+        "proposed", say("this project; method-details, section 6"), "none"
     )
 
 
@@ -160,7 +162,7 @@ class Unrecorded(Declared):
     """
 
     rule: Literal["as_is", "expected"] = _option(
-        "inferred", say("this project; appendix 4 to 6"), "as_is", added=True
+        "inferred", say("this project; method-details, sections 4 to 6"), "as_is", added=True
     )
 
 

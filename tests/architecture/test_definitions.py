@@ -9,7 +9,12 @@ from warehouse.intake.seasons import INDEXED
 BARE = {
     *("samples", "blocks", "read_tows", "read_runs", "set_aside", "failed_tows", "unforeseen"),
     *("applied_methods", "decisions", "published_register", "published_register_history"),
-    *("published_register_changes", "published_lineage", "differences_that_matter"),
+    *(
+        "published_register_changes",
+        "published_lineage",
+        "differences_that_matter",
+        "objection_terms",
+    ),
     *("warehouse_database", "site", "check_results", "report"),
 }
 """Tables between assets, which no reader has: their columns are not declared."""

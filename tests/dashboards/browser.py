@@ -57,9 +57,7 @@ def barriers(page):
         "document.querySelectorAll('tbody').forEach(body =>"
         " body.replaceChildren(...[...body.rows].slice(0, 3)))"
     )
-    page.wait_for_function(
-        "!document.querySelector('svg:not([role=img][aria-label], [aria-hidden])')"
-    )
+    page.wait_for_function("!document.querySelector('svg:not([role][aria-label], [aria-hidden])')")
     only = {"resultTypes": ["violations"], "preload": False}
     found = Axe().run(page, {"exclude": ["svg"]}, only).response["violations"]
     return [

@@ -22,6 +22,7 @@ LINE = {
     "old_cw_kg_m": 32.07, "declared_speed_m_s": 2.31, "old_declared_speed_m_s": 2.31,
     "causes": '[{"cause": "method", "step": "temperature", "factor": 0.97},'
     ' {"cause": "method", "step": "wind", "factor": 0.9969}]',
+    "objection": {"to": "", "until": None, "grounds": ""},
     "gain_in_two_hours_s": -79.2, "exceeds_interval": False, "old_log_known": True,
     "new_log_known": True, "old_type_place": 3, "new_type_place": 2, "type_size": 5,
     "status": "valid", "flags": [], "tow_date": dt.date(2017, 3, 10),
@@ -41,6 +42,9 @@ OTHERWISE = {
     "not known whether beyond": {"exceeds_interval": None},
     "a log without a known error": {"new_log_known": False, "log_source": "none"},
     "an old log without a known error": {"old_log_known": False},
+    "terms of an objection": {"objection": {
+        "to": "de commissie, meten@example.org", "until": dt.date(2026, 5, 31),
+        "grounds": "gegevens die niet kloppen"}},
     "not altered": {"altered": False},
     "two tows on one day": {"old_tow_date": LINE["tow_date"]},
     "one tow, beyond": {"exceeds_interval": True, "old_tow_id": LINE["tow_id"]},

@@ -190,9 +190,9 @@ def test_a_table_downloads_what_it_shows_and_a_name_is_no_formula(visit):
     assert {FORMULA.replace("=", "'="), ATTACK} <= {row["Naam"] for row in rows}
 
 
-def test_choosing_a_method_changes_the_curve_and_the_runs(visit, attacked):
+def test_choosing_a_method_changes_the_cuts_and_the_runs(visit, attacked):
     page = visit(boat_path(attacked))
-    for part in ("[data-tow_id][data-method] svg[role=img]", "tr[data-tow_id][data-method]"):
+    for part in (".traces svg[role=img] g", "tbody[data-tow_id][data-method]"):
         seen = f"{part}:visible"
         choose(page, "method", "rebased-2015")
         before = page.locator(seen).evaluate_all("parts => parts.map(part => part.outerHTML)")

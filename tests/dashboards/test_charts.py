@@ -8,7 +8,7 @@ import pytest
 
 from dashboards import charts
 from dashboards.language import Language
-from dashboards.plot import Plot, fit_scale
+from dashboards.plot import LegendEntry, Plot, fit_scale
 
 NL = Language("nl")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -32,7 +32,7 @@ CURVE = pl.DataFrame(
          "cw_hi_kg_m": 32.0, "interval": "runs_alone"},
     ],
     infer_schema_length=None,
-)  # fmt: skip
+).with_columns(method=pl.lit("rebased"))  # fmt: skip
 TOWS = pl.DataFrame(
     [
         {"method": method, "crew_class": crew, "label": f"Vlet 8{crew} 2014", "page": "#",
@@ -66,7 +66,6 @@ ANSWER = {
     "cw_kg_m": 23.2, "cw_lo_kg_m": 22.7, "cw_hi_kg_m": 23.8, "new_log_known": True,
     "peers": [24.1, 24.5],
 }  # fmt: skip
-BUDGET = pl.DataFrame({"component": ["random", "wind"], "u_ratio": [0.01, 0.002]})
 SECONDS = pl.DataFrame(
     {"run": [1, 1, 2, 2], "second": [0, 1, 0, 1], "speed_m_s": [2.4, 2.5, 2.6, 2.5],
      "gps_m_s": [None, 2.4, 2.5, 2.5], "force_n": [200.0, 210.0, 220.0, 215.0],
@@ -87,7 +86,6 @@ DRAWN = {
     "seasons": lambda: charts.draw_seasons(NL, CHANGES, "Seizoenen"),
     "number": lambda: charts.draw_number(NL, ANSWER, "Getal"),
     "gains": lambda: charts.draw_gains(NL, GAINS, "Tijd"),
-    "shares": lambda: charts.draw_shares(NL, BUDGET, "component", "u_ratio", "Onzekerheid"),
     "trace lines": lambda: charts.trace_lines(SECONDS),
     "trace frame": lambda: charts.trace_frame(NL, SECONDS, [("", CUTS)], "Metingen"),
 }
@@ -163,6 +161,16 @@ def test_a_bar_that_leaves_the_log_out_is_dashed():
     assert 'stroke-dasharray="3 3"' not in str(charts.draw_curves(NL, complete, "x"))
 
 
+def test_methods_share_the_axes_of_a_curve_and_are_named_by_their_colour():
+    older = CURVE.with_columns(pl.col("cw_kg_m") + 2, method=pl.lit("as-published"))
+    both = charts.draw_curves(NL, pl.concat([older, CURVE]), "x")
+    assert {"heen", "terug", "zoals gepubliceerd", "herijkt"} <= set(words(both))
+    assert "herijkt" not in words(DRAWN["curves"]())
+    dots = re.findall(r'stroke="([^"]+)"><title>run 1: 2,40 m/s, ([\d,]+) kg/m', str(both))
+    assert [cw for _, cw in dots] == ["33,00", "31,00"]
+    assert len({ink for ink, _ in dots}) == 2
+
+
 def test_a_trace_says_why_it_was_cut_and_a_name_is_escaped():
     shown = words(DRAWN["trace frame"]())
     assert any("vlaag" in text for text in shown)
@@ -192,9 +200,8 @@ def test_ticks_are_round_numbers_within_the_scale(values, ticks):
 
 
 def test_a_legend_too_long_for_a_line_has_more_of_them():
-    names = dict.fromkeys(range(4), "een lange naam van een methode")
-    plot = Plot(NL, legend=names)
-    plot.add_legend(names)
+    legend = [LegendEntry.from_kind("een lange naam van een methode", kind) for kind in range(4)]
+    plot = Plot(NL, legend=legend)
     (svg,) = pictures(plot.to_svg("x"))
     rows = {text.get("y") for text in svg.iter(f"{SVG}text")}
     assert len(rows) > 1

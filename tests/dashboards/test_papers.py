@@ -65,7 +65,8 @@ def test_a_certificate_says_what_the_register_says(views):
     assert facts["Decision"] == "SKC <8 mei>"
     assert facts["Issued by"] == "Federatie"
     assert facts["Tow"] == line["tow_id"]
-    assert len([block for block in blocks if block.kind == "picture"]) == 2  # code and curve
+    pictures = [block.caption for block in blocks if block.kind == "picture"]
+    assert len(pictures) == 3, pictures  # the code, the number and the curve
     tables = [block.rows for block in blocks if block.kind == "table" and block.look != "facts"]
     speed, cw, power = (float(text) for text in tables[0][4])
     assert speed == pytest.approx(line["declared_speed_m_s"], abs=0.005)

@@ -5,6 +5,7 @@ import polars as pl
 import pytest
 
 from dashboards.queries.boats import read_boat
+from dashboards.queries.pages import read_changes
 from dashboards.queries.results import Results
 from dashboards.queries.types import compare_types
 from tests.conftest import METHODS
@@ -70,3 +71,17 @@ def test_set_aside_tows_of_a_boat_are_found_by_number_or_file_and_no_others(benc
     with Views(bench.store) as views:
         found = [row["path"] for row in read_boat(Results(views), "FSN101")["set_aside"]]
     assert found == ["a.csv", "meetdata_2014/razende snol 8h 2014.csv"]
+
+
+def test_what_is_voted_on_and_what_was_decided_multiply_to_the_change(built_results):
+    """Of a line that changes by nothing else, and only of drafts: an edition was decided."""
+    found = read_changes(built_results)
+    new = found["chosen"]["to_edition"]
+    assert new == f"concept-{METHODS[-1]}"
+    motion = found["motion"]
+    assert {"decided", "proposed"} <= motion["voted"].keys()
+    assert "temperature" in motion["voted"]["decided"]
+    lines = built_results.line_changes.filter(to_edition=new, change="changed")
+    both = motion["decided"] * motion["proposed"]
+    assert both == pytest.approx(lines["cw_ratio"].median(), abs=0.01)
+    assert read_changes(built_results, "concept-as-published")["motion"] is None

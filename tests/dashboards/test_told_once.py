@@ -55,6 +55,14 @@ def test_a_narrow_terminal_keeps_numbers_whole_and_names_what_it_leaves_out():
         assert any("Weight" in line for line in lines)
 
 
+def test_a_terminal_shows_headings_in_bold_and_verdicts_in_colour_and_says_the_same():
+    html = '<h1>Vlet</h1><p data-said="let_go good">In orde.</p><p>Klaar.</p>'
+    coloured = to_text(html, coloured=True)
+    assert "\x1b[1mVlet\x1b[0m" in coloured
+    assert "\x1b[32mIn orde.\x1b[0m\nKlaar." in coloured
+    assert re.sub(r"\x1b\[\d+m", "", coloured).strip() == to_text(html)
+
+
 def get_words(block):
     """The words of a block without its numbers; of a table its titles."""
     text = " | ".join(block.rows[0]) if block.kind == "table" else block.text

@@ -11,6 +11,7 @@ import pytest
 from dashboards import words
 from dashboards.document import Document
 from dashboards.language import Language
+from dashboards.queries.boats import NEGLIGIBLE_CHANGE
 from dashboards.queries.types import choose_decimals
 from dashboards.templates import get_template
 from tests.conftest import METHODS
@@ -60,7 +61,7 @@ def test_steps_show_every_tow_curve_run_and_component(herijk, built):
     mine = pl.col("tow_id").is_in(curves["tow_id"].to_list())
     for speed in built.table("run_points").filter(mine)["speed_m_s"]:
         assert f" {speed:.2f} " in out
-    budget = built.table("uncertainty_budget").filter(mine, pl.col("u_ratio") > 1e-4)
+    budget = built.table("uncertainty_budget").filter(mine, pl.col("u_ratio") >= NEGLIGIBLE_CHANGE)
     for component, u_ratio in budget.select("component", "u_ratio").rows():
         assert re.search(rf"{re.escape(name_code(component))} [\w ]+ {100 * u_ratio:.1f} %", out)
     one = squeeze(herijk(*call, "--method", "rebased-2015")[1])

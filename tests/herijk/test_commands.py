@@ -1,8 +1,10 @@
 """The command line itself: its help in two languages, its folders, its errors and exit status."""
 
 import re
+import shlex
 import shutil
 
+import click
 import pytest
 from click.testing import CliRunner
 
@@ -35,6 +37,26 @@ def test_the_overview_has_every_command_in_a_section_with_its_whole_first_senten
     assert "..." not in shown.split("Begin:")[1]
     for name in app.commands:
         assert re.search(rf"^  {name} +\w", shown, re.MULTILINE), name
+
+
+@pytest.mark.parametrize("path", COMMANDS, ids=" ".join)
+def test_help_ends_with_examples_that_the_command_takes(path):
+    command = COMMANDS[path]
+    assert command.examples
+    for example in command.examples:
+        name, *words = shlex.split(example.partition(" >> ")[0])
+        assert (name, *words[: len(path)]) == ("herijk", *path)
+        command.make_parser(click.Context(command)).parse_args(words[len(path) :])
+    shown = CliRunner().invoke(app, [*path, "--help", "--lang", "en"]).output
+    assert shown.endswith(f"  {command.examples[-1]}\n")
+
+
+def test_a_shell_completes_commands():
+    script = CliRunner().invoke(app, ["completion", "bash"]).output
+    assert "_HERIJK_COMPLETE=bash_complete" in script
+    asked = {"_HERIJK_COMPLETE": "bash_complete", "COMP_WORDS": "herijk se", "COMP_CWORD": "1"}
+    given = CliRunner().invoke(app, prog_name="herijk", env=asked).output
+    assert given.split() == ["plain,seasons", "plain,serve"]
 
 
 @pytest.mark.parametrize("path", COMMANDS, ids=" ".join)

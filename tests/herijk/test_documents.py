@@ -45,7 +45,9 @@ def test_of_all_certificates(fails, herijk, data, built, tmp_path):
     line = lines.row(0, named=True)
     lost = f"certificate-{EDITION}-{line['fsn_no']}-{line['rowers']}{line['crew_class']}"
     command = ("certificate", "--edition", EDITION, "--out", tmp_path / "all.pdf")
-    fails(lost, papers, "draw_line_curve", lambda one: one["tow_id"] == line["tow_id"], *command)
+    fails(
+        lost, papers, "compute_line_curve", lambda one, _: one["tow_id"] == line["tow_id"], *command
+    )
     assert len(pypdf.PdfReader(tmp_path / "all.pdf").pages) == lines.height - 1
     assert herijk("export", *command, "--data", data)[0] == 0
     assert not (data / "unforeseen" / f"{lost}.txt").exists()

@@ -60,10 +60,14 @@ def describe_contents() -> str:
 
 
 def warehouse_database(
-    tables: dict[str, pl.DataFrame], about_archive: pl.DataFrame, store: Store
+    tables: dict[str, pl.DataFrame],
+    about_archive: pl.DataFrame,
+    objection_terms: pl.DataFrame,
+    store: Store,
 ) -> pl.DataFrame:
     """Write all tables into one DuckDB file, swapped in whole; return its contents and hash."""
-    tables["about"] = _about(about_archive)
+    known_terms = objection_terms.filter(pl.col("value") != "")
+    tables["about"] = pl.concat([_about(about_archive), known_terms])
     tables["contents"] = _contents(tables)
     build_database(store.database, tables)
     sha256 = pl.lit(file_sha256(store.database)).alias("sha256")

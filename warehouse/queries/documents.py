@@ -1,5 +1,6 @@
 """What printed documents say: the lines of certificates, and a proposal against what counts now."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -21,6 +22,8 @@ CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"
 OF_EDITION: Final = ("decision", "valid_from", "published_on", "code_version")
 SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
 """Speeds of the power table, as parts of the declared speed: where the curve holds."""
+SMOOTH_SPEEDS: Final = tuple(np.linspace(SPEEDS[0], SPEEDS[-1], 31))
+"""Speeds through which the curve is drawn."""
 
 
 def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Row]:
@@ -30,9 +33,10 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
 
     Returns:
         Rows of `register` with the boat's `name` and `boat_type`, `basis` (None in a draft), the
-        columns `OF_EDITION`, `log_known` (whether the interval holds the error of the log),
-        `from_edition` and `old_cw_kg_m` (what held before, null where nothing did) and `others`:
-        the lines of the boat's other crews.
+        columns `OF_EDITION`, `new_log_known` (whether the interval holds the error of the log),
+        `from_edition`, `old_cw_kg_m` with its interval and `old_log_known` (what held before, null
+        where nothing did), `peers` (Cw of the other boats of its type and class) and `others`: the
+        lines of the boat's other crews.
 
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line of that boat in it.
@@ -45,7 +49,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
         raise MissingKnowledgeError(
             "edition {} has no valid line of {}", edition, fsn_no or say("any boat")
         )
-    known = log_known(views).filter(edition=edition)["log_known"].first()
+    known = dict(log_known(views).rows())
     about = views.table("editions").filter(edition=edition)
     terms = about.select(OF_EDITION).to_dicts() or [dict.fromkeys(OF_EDITION)]
     crews = lines.sort("rowers", "crew_class").to_dicts()
@@ -56,7 +60,13 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
             is_same_line = all(other[name] == line[name] for name in LINE)
             if other["fsn_no"] == line["fsn_no"] and not is_same_line:
                 others.append(other)
-        rows.append(line | terms[0] | {"log_known": known, "others": others})
+        added = {
+            "new_log_known": known.get(edition),
+            "old_log_known": known.get(line["from_edition"]),
+            "peers": _list_peers(lines, line),
+            "others": others,
+        }
+        rows.append(line | terms[0] | added)
     return rows
 
 
@@ -73,13 +83,31 @@ def _lines(views: Views, edition: str) -> pl.DataFrame:
             raise make_unknown_edition_error(edition, drafts["edition"].unique())
         changes = views.table("register_changes").filter(to_edition=edition)
         before = drafts.join(changes, left_on="edition", right_on="from_edition", how="semi")
-    held = before.select(pl.col(LINE), from_edition="edition", old_cw_kg_m="cw_kg_m")
+    held = before.select(
+        pl.col(LINE),
+        pl.col("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m").name.prefix("old_"),
+        from_edition="edition",
+    )
     return lines.join(held, on=LINE, how="left", maintain_order="left")
 
 
-def draw_line_curve(line: Row) -> pl.DataFrame:
-    """Return the curve of a line: `speed_m_s`, `cw_kg_m` and `power_w` per rower."""
-    speed = np.array(SPEEDS) * line["declared_speed_m_s"]
+def _list_peers(lines: pl.DataFrame, line: Row) -> list[float]:
+    """Return Cw of the other boats of the type of a line with a crew of its class."""
+    if not line["boat_type"]:
+        return []
+    alike = lines.filter(boat_type=line["boat_type"], crew_class=line["crew_class"])
+    others = alike.filter(pl.col("fsn_no") != line["fsn_no"])
+    return others["cw_kg_m"].drop_nulls().sort().to_list()
+
+
+def compute_line_curve(line: Row, speeds: Sequence[float]) -> pl.DataFrame:
+    """Return the curve of a line: `speed_m_s`, `cw_kg_m` and `power_w` per rower.
+
+    Args:
+        line: with the columns of `CURVE` and `rowers`.
+        speeds: where, as parts of the declared speed.
+    """
+    speed = np.array(speeds) * line["declared_speed_m_s"]
     a, s = find_line_curves(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))
     resistance = cw(a, s, speed)
     power = power_per_rower_w(resistance, speed, np.full(speed.shape, line["rowers"]))
