@@ -118,7 +118,7 @@ class Document:
         return get_template(f"{template}.html.j2").render(self.get_names() | data)
 
     def get_names(self) -> dict[str, Any]:
-        """Return what every template can use."""
+        """Return the names that every template can use."""
         of_document = {name: getattr(self, name) for name in _OF_DOCUMENT}
         of_language = {name: getattr(self.language, name) for name in _OF_LANGUAGE}
         chosen = {"_": self.text, "chosen": self.chosen}

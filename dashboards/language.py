@@ -89,7 +89,7 @@ class Language:
         return self.say(value) if isinstance(value, str) else str(value)
 
     def _write_words(self, kind: Kind, value: Any) -> str:
-        """Return what a column holds by its code or name, in words."""
+        """Return a code or name of a column in words."""
         if kind is Kind.CAUSE:
             return self.say(words.name_change_cause(value))
         if kind is Kind.CAUSES:
@@ -124,7 +124,7 @@ class Language:
         return self.say(name_it(code))
 
     def _write_causes(self, causes: list[dict[str, Any]]) -> str:
-        """Return what a change is attributed to, each with its factor in per cent."""
+        """Return the causes of a change, each with its factor in per cent."""
         return "; ".join(
             f"{self.say(words.name_change_cause(one))} {self.write_change(one['factor'])}"
             for one in causes

@@ -77,12 +77,12 @@ class Check:
 def write_headlines(
     changes: ChangeReport, checks: Sequence[Check], language: str = "en"
 ) -> list[str]:
-    """Return what happened in a few lines, the most important first."""
+    """Return the news of a rebuild in a few lines, the most important first."""
     return _read_texts("news", language, changes=changes, checks=order_checks(checks))
 
 
 def write_check(check: Check, language: str) -> str:
-    """Return what a check found."""
+    """Return the findings of a check as text."""
     name_code = Language(language).name_code
     return ", ".join(f"{name_code(name)} {value}" for name, value in check.values)
 

@@ -61,7 +61,7 @@ def to_text(
     for block in read_blocks(html, folded=folded):
         text = _write(block, width)
         parts.append(_colour(block, text) if coloured else text)
-    return re.sub(r"\n{3,}", "\n\n", "\n".join(parts)).strip()
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(parts)).strip("\n")
 
 
 def _colour(block: Block, text: str) -> str:
@@ -102,10 +102,11 @@ def _wrap(text: str, width: int, indent: str = "") -> list[str]:
 
 
 class Column(NamedTuple):
-    """A column of a table: its title on one or more lines, its cells, and how narrow it can be."""
+    """A column of a table: its title on one or more lines, its cells, how wide it is and can be."""
 
     title: str
     cells: Sequence[str]
+    width: int
     min_width: int
 
     @classmethod
@@ -117,7 +118,7 @@ class Column(NamedTuple):
         lines = textwrap.wrap(title, max(MIN_HEADING_WIDTH, widest), break_long_words=False)
         of_title = max(map(len, lines), default=0)
         min_width = max(longest_word, min(widest, MIN_TEXT_WIDTH), of_title)
-        return cls("\n".join(lines), cells, min_width)
+        return cls("\n".join(lines), cells, max(widest, of_title), min_width)
 
 
 def _draw_table(block: Block, width: int) -> str:
@@ -134,14 +135,15 @@ def _draw_table(block: Block, width: int) -> str:
     own_width = width - len(INDENT)
     fitting = _choose_columns([one.min_width for one in columns], block.not_narrow, own_width)
     table = Table(box=None, pad_edge=False, header_style="", collapse_padding=True)
-    for place in fitting:
+    title_height = max(columns[place].title.count("\n") for place in fitting)
+    widths = _fit_widths([columns[place] for place in fitting], own_width)
+    for place, column_width in zip(fitting, widths, strict=True):
         column = columns[place]
         table.add_column(
-            column.title,
+            "\n" * (title_height - column.title.count("\n")) + column.title,
             justify="right" if all(map(NUMBER.fullmatch, column.cells)) else "left",
-            vertical="bottom",
             overflow="fold",
-            min_width=column.min_width,
+            width=column_width,
         )
     for row in shown:
         table.add_row(*(row[place] for place in fitting))
@@ -163,6 +165,17 @@ def _choose_columns(widths: Sequence[int], not_narrow: Collection[int], width: i
     while len(places) > 1 and sum(widths[place] + 1 for place in places) - 1 > width:
         places.remove(candidates.pop())
     return places
+
+
+def _fit_widths(columns: Sequence[Column], width: int) -> list[int]:
+    """Return how wide columns are on a line, the widest narrowed first, to its least."""
+    widths = [column.width for column in columns]
+    least = [column.min_width for column in columns]
+    while sum(widths) + len(widths) - 1 > width and widths != least:
+        spare = [own - low for own, low in zip(widths, least, strict=True)]
+        candidates = [place for place, room in enumerate(spare) if room > 0]
+        widths[max(candidates, key=widths.__getitem__)] -= 1
+    return widths
 
 
 def _print(table: Table, width: int) -> Iterator[str]:

@@ -289,7 +289,7 @@ def name_candidate(code: str) -> Sentence:
 
 
 def name_change_cause(found: Mapping[str, Any]) -> Sentence:
-    """Return what a change comes from: a step of the method by its name, or another cause.
+    """Return the cause of a change: a step of the method by its name, or another cause.
 
     Args:
         found: `cause` and, where it is the method, `step`; small causes together are `rest`.

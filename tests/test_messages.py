@@ -89,7 +89,7 @@ def test_data_is_never_translated():
     assert say("{} tows in {} seasons", "Look", 3).spoken("nl") == "Look proeven in 3 seizoenen"
     assert NL("{} tows in {} seasons", "Look", 3) == "Look proeven in 3 seizoenen"
     made = Document(Language("nl")).table([{"name": "Look"}], "name", heads={"name": say("boat")})
-    assert to_text(made) == "sloep\n  Look"
+    assert to_text(made) == "  sloep\n  Look"
 
 
 def test_click_still_says_what_is_translated():

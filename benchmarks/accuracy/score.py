@@ -18,6 +18,7 @@ PERIODS = {
     "2012-13": range(2012, 2014),
     "2014 on": range(2014, 10_000),
 }
+ALL = "all"
 FAULTY = "faulty"
 """Group of the seasons in which a world has its fault, where these are not all seasons."""
 ESTIMATES = {
@@ -69,12 +70,12 @@ def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -
         *_factors(tables["log_factors"], truth, doubted, _not_told_apart(tables)),
         _alarms(truth, faulty, seasons_said(tables, NAMED)),
         *_equal_boats(tables),
-        _asked(tows),
+        *_asked(tows),
     ]
 
 
-def _asked(tows: pl.DataFrame) -> Record:
-    """Return of how many sound tows a person is asked something, or only of their season.
+def _asked(tows: pl.DataFrame) -> Iterator[Record]:
+    """Return of how many sound tows a person is asked something, or only of their season, per era.
 
     Sound is a tow that nothing was done to: not altered, not pulled askew. Of these, `near_*` are
     truly within `NEAR` of the truth as measured.
@@ -86,16 +87,18 @@ def _asked(tows: pl.DataFrame) -> Record:
         is_asked=flags.set_intersection(pl.lit(ASKED)).list.len() > 0,
         of_season=flags.contains(OF_SEASON),
     )
-    near = sound.filter("is_near")
-    return {
-        "what": "sound tows",
-        "group": "tows",
-        "sound_tows": sound.height,
-        "of_season": int(sound["of_season"].sum()),
-        "asked": int(sound["is_asked"].sum()),
-        "near_tows": near.height,
-        "near_asked": int(near["is_asked"].sum()),
-    }
+    for group, seasons in (PERIODS | {ALL: set(sound["season"])}).items():
+        of_group = sound.filter(pl.col("season").is_in(seasons))
+        near = of_group.filter("is_near")
+        yield {
+            "what": "sound tows",
+            "group": group,
+            "sound_tows": of_group.height,
+            "of_season": int(of_group["of_season"].sum()),
+            "asked": int(of_group["is_asked"].sum()),
+            "near_tows": near.height,
+            "near_asked": int(near["is_asked"].sum()),
+        }
 
 
 def _sums(tows: pl.DataFrame, cw: str, lo: str, hi: str) -> Record:
@@ -196,7 +199,9 @@ def table(records: pl.DataFrame) -> Iterator[str]:
             if rows["n"].sum():
                 yield _line(world, str(group), str(what), rows)
         yield _alarm_line(world, mine.filter(what="alarms"))
-        yield _asked_line(world, mine.filter(what="sound tows"))
+        asked = mine.filter(what="sound tows")
+        for (group,), rows in asked.group_by("group", maintain_order=True):
+            yield _asked_line(world, str(group), rows)
         equal = mine.filter(what="equal boats")
         if equal.height:
             share, error = mean_and_error(equal["rejected"].to_numpy(), equal["tested"].to_numpy())
@@ -225,7 +230,7 @@ def _line(world: str, group: str, what: str, rows: pl.DataFrame) -> str:
     return f"| {world} | {group} | {what} | {rows.height} | " + " | ".join(cells) + " |"
 
 
-def _asked_line(world: str, rows: pl.DataFrame) -> str:
+def _asked_line(world: str, group: str, rows: pl.DataFrame) -> str:
     pairs = {
         "asked about": ("asked", "sound_tows"),
         f"within {NEAR:.0%} and asked about": ("near_asked", "near_tows"),
@@ -235,7 +240,7 @@ def _asked_line(world: str, rows: pl.DataFrame) -> str:
     for name, (count, of) in pairs.items():
         value, error = mean_and_error(rows[count].to_numpy(), rows[of].to_numpy())
         said.append(f"{name} {100 * value:.1f} ± {100 * error:.1f} %")
-    return f"| {world} | all | sound tows | {rows.height} | {'; '.join(said)} | | | | | |"
+    return f"| {world} | {group} | sound tows | {rows.height} | {'; '.join(said)} | | | | | |"
 
 
 def _alarm_line(world: str, rows: pl.DataFrame) -> str:

@@ -43,7 +43,7 @@ def read_boat(
     methods: Sequence[str] | None = None,
     tow_id: str | None = None,
 ) -> Data:
-    """Return what the page of a boat and `herijk audit BOAT` say.
+    """Return the data of the page of a boat and of `herijk audit BOAT`.
 
     Args:
         results: the tables.
@@ -144,7 +144,7 @@ def _leave_out_repeated_drafts(register: pl.DataFrame) -> pl.DataFrame:
 
 
 def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
-    """Return what there is to say of each crew of a boat in an edition, by boat.
+    """Return the answer about each crew in an edition, by boat.
 
     Returns:
         Rows of `warehouse.queries.answers.answers` with `races`, `faults`, `causes`, `bars` (see
@@ -258,7 +258,7 @@ def _has_moved(line: Row) -> bool:
 
 
 def list_causes(line: Row) -> list[Row]:
-    """Return what made a line change, the largest first; small causes as one, called `rest`.
+    """Return the causes of a line's change, the largest first; small ones as one, `rest`.
 
     Args:
         line: with `causes`, a list of rows or its JSON; None where it is not compared.

@@ -57,7 +57,7 @@ def compare(
 
 
 def _sum_up(effect: DiffReport) -> Data:
-    """Return what the document says of a comparison."""
+    """Return the data of the document about a comparison."""
     ranked = [race for race in effect.races or () if race["new_rank"] is not None]
     moved = [race for race in ranked if race["old_rank"] != race["new_rank"]]
     return {

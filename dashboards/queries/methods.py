@@ -90,7 +90,7 @@ def describe_option(one: Difference) -> Row:
 
 
 def _get_first_option(method: Method, step: str) -> Row:
-    """Return what the first option of a step is in the last seasons."""
+    """Return the first option of a step with its value in the last seasons."""
     options: Any = getattr(method.ranges[-1].steps, step)
     option = next(iter(type(options).model_fields))
     value = getattr(options, option)
@@ -98,7 +98,7 @@ def _get_first_option(method: Method, step: str) -> Row:
 
 
 def group_by_status(changed: Sequence[Difference]) -> dict[str, dict[str, list[Row]]]:
-    """Return what changes by status, and of each step its options."""
+    """Return changed options by who decided them, and within that by step."""
     found: dict[str, dict[str, list[Row]]] = {"decided": {}, "proposed": {}, "inferred": {}}
     for one in map(describe_option, changed):
         found[one["basis"].status].setdefault(one["step"], []).append(one)

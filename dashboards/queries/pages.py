@@ -64,7 +64,7 @@ def read_start(results: Results) -> Data:
 
 
 def sum_up_gains(lines: pl.DataFrame) -> Data | None:
-    """Return what an edition does to crews in a race of two hours at equal power.
+    """Return the seconds that an edition gives or costs crews over two hours at equal power.
 
     Args:
         lines: rows of `warehouse.queries.answers.line_changes` of two editions.
@@ -124,7 +124,7 @@ def sum_up_changes(lines: pl.DataFrame) -> Data:
 
 
 def read_season_changes(results: Results) -> Data:
-    """Return what each method makes of each season, and where the one shown first changes most."""
+    """Return the change of Cw by method and season, and the season that changes most."""
     changes = results.rows("season_changes")
     own = changes.filter(method=results.method)
     return {"season_changes": changes, "most_changed": find_most_changed(own, "season")}
@@ -246,7 +246,7 @@ def read_years(results: Results, method: str | None = None) -> Data:
 
 
 def pick_cause(found: Row) -> Row:
-    """Return what names a cause: its code and, where it is the method, the step."""
+    """Return the code of a cause and, where it is the method, the step."""
     return {"cause": found["cause"], "step": found["step"]}
 
 
@@ -254,7 +254,7 @@ def pick_cause(found: Row) -> Row:
 
 
 def read_seasons(results: Results, method: str | None = None) -> Data:
-    """Return what was wrong with the instruments of each season, and how well tows repeat.
+    """Return the instrument errors of each season, and how well tows repeat.
 
     Args:
         results: the tables.
@@ -366,7 +366,7 @@ def _tabulate_ladder(ladder: pl.DataFrame) -> pl.DataFrame:
 
 
 def read_changes(results: Results, edition: str | None = None) -> Data:
-    """Return what changes from one edition to the next, for whom, and the races.
+    """Return the changes from one edition to the next, by crew, and the races.
 
     Args:
         results: the tables.
@@ -388,7 +388,7 @@ def read_changes(results: Results, edition: str | None = None) -> Data:
 
 
 def read_motion(results: Results, lines: pl.DataFrame) -> Data | None:
-    """Return what a vote for a draft is about; None where nothing is put to the vote.
+    """Return the motion about a draft; None where nothing is put to the vote.
 
     Args:
         results: the tables.
@@ -489,7 +489,7 @@ def measure_fatigue_range(times_s: pl.Series) -> Row:
 
 
 def read_quality(results: Results) -> Data:
-    """Return what was set aside, what is flagged, and how often each check found something."""
+    """Return the quarantine, the flags, and how often each check found something."""
     views = results.views
     statuses = views.ask("statuses").filter(method=results.method)
     by_status = statuses.group_by("status", maintain_order=True).agg(pl.col("number").sum())

@@ -120,7 +120,7 @@ def read_proposal(
     titles: Mapping[str, str],
     letter: Data,
 ) -> Data:
-    """Return what methods change against an edition, for whom, and how uncertain that is.
+    """Return the effect of methods against an edition, by crew and type, with its uncertainty.
 
     Args:
         views: the open database.
@@ -153,7 +153,7 @@ def read_proposal(
 
 
 def _describe_proposal(views: Views, against: str, method: str, lines: pl.DataFrame) -> Data:
-    """Return what one method changes."""
+    """Return the effect of one method."""
     gain = pl.col("gain_in_two_hours_s")
     moved = lines.filter(change="changed").drop_nulls("gain_in_two_hours_s").sort(gain, "fsn_no")
     flagged = views.ask("flagged_boats").filter(method=method)["tow_id"]
@@ -178,7 +178,7 @@ def _describe_proposal(views: Views, against: str, method: str, lines: pl.DataFr
 
 
 def measure_effects(lines: pl.DataFrame, *by: str) -> pl.DataFrame:
-    """Return what happens to lines with a number on both sides, by the values of these columns.
+    """Return the change of lines that have a number on both sides, by these columns.
 
     Men come before women.
 

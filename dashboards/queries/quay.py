@@ -55,7 +55,7 @@ INSTRUMENT_FINDINGS: Final = (
 
 
 def describe_tow(tow: Assessment, *, log_known: bool) -> Data:
-    """Return what the document about a tow on the quay needs.
+    """Return the data of the document about a tow on the quay.
 
     Args:
         tow: a tow that was assessed.

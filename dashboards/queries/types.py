@@ -36,7 +36,7 @@ INTERVALS: Final = {
 
 
 def read_type(results: Results, boat_type: str) -> Data:
-    """Return what the page of a type says."""
+    """Return the data of the page of a type."""
     tows = _read_newest_tows(results).filter(boat_type=boat_type)
     ends = results.before_and_after
     lines = results.views.table("type_line_points")
@@ -137,7 +137,7 @@ def _is_judged(verdicts: Sequence[Row]) -> bool:
 
 
 def compare_types(results: Results, types: Sequence[str], methods: Sequence[str]) -> Data:
-    """Return what `herijk audit TYPE [TYPE]` says of one type or two.
+    """Return the data of `herijk audit TYPE [TYPE]`: one type or two.
 
     Args:
         results: the tables.

@@ -15,7 +15,7 @@ SUFFIX: Final = ".j2"
 
 
 def make_environment(loader: jinja2.BaseLoader) -> jinja2.Environment:
-    """Return what reads templates: what is filled in is escaped, what is unknown is an error."""
+    """Return the environment of Jinja, which escapes values and rejects unknown names."""
     return jinja2.Environment(
         loader=loader,
         autoescape=True,

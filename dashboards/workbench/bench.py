@@ -91,7 +91,7 @@ class Bench:
         self._draft = lru_cache(DRAFTS_KEPT)(history.under)
 
     def read_address(self, query: Mapping[str, str]) -> Asked:
-        """Return what an address asks; what it leaves out, and an unknown boat, is as usual."""
+        """Return the question in an address; missing parts and unknown boats take defaults."""
         base, boats = query.get("base") or DEFAULT_BASE, self.boats["fsn_no"].to_list()
         boat = query.get("boat", "")
         return Asked(
@@ -125,7 +125,7 @@ class Bench:
         return differences(self.make_method(asked), self.known.get(asked.base))
 
     def compute_results(self, asked: Asked) -> Data:
-        """Return what follows from the method asked for, beside what it is compared with.
+        """Return the results of the chosen method beside those it is compared with.
 
         Raises:
             HerijkError: the method does not cover a season, or cannot be.
@@ -151,7 +151,7 @@ class Bench:
         return Scenario(self._draft(self._get_compared(asked.against)), self.make_draft(asked))
 
     def make_draft(self, asked: Asked) -> Draft:
-        """Return what follows from the method that is asked for."""
+        """Return the results of the chosen method."""
         return self._draft(self.make_method(asked))
 
     def list_editions(self) -> list[str]:

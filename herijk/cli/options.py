@@ -157,7 +157,7 @@ def _choose_rows(value: Any, chosen: Mapping[str, str]) -> Any:
 
 
 def _to_json(data: Mapping[str, Any], html: str) -> str:
-    """Return what a query found, frames as rows, and all that the document states about it."""
+    """Return the data of a document, frames as rows, and its statements, as JSON."""
     from pydantic_core import to_json
 
     from dashboards.reading import read_blocks

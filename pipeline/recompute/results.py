@@ -83,15 +83,16 @@ def build_tables(
     def named(frame: pl.DataFrame) -> pl.DataFrame:
         return frame.select(name, pl.all())
 
-    pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
+    pooled = estimated is not None
     run_points = choose_repeated_runs(named(_make_run_points(c)))
     speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
     inputs = make_budget_inputs(c, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
-    components = make_budget(inputs, get_assumed(c, estimated))
-    bounds = combine(components)
-    at_v0 = components.filter(at_declared)
-    curves = named(_make_curves(c, bounds.filter(at_declared), pooled))
-    curves = add_best_estimates(curves, estimated, at_v0, inputs.filter(at_declared))
+    declared_inputs = inputs.filter(speed_ratio=DECLARED)
+    assumed = get_assumed(c, estimated)
+    bounds = combine(inputs, assumed)
+    at_v0 = make_budget(declared_inputs, assumed)
+    curves = named(_make_curves(c, bounds.filter(speed_ratio=DECLARED), pooled))
+    curves = add_best_estimates(curves, estimated, at_v0, declared_inputs)
     diagnosis = _join_diagnoses(estimated, c)
     assessments = assess(curves, run_points, c.tows.frame, diagnosis)
     rejecting = [

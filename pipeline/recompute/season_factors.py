@@ -56,13 +56,7 @@ def find_season_factors(c: Computed) -> SeasonFactors:
     Args:
         c: all tows under `leave_out_factor`.
     """
-    first = estimate_roughly(make_observations(c, {}))
-    tow_id = first.fit.model.archive.frame["tow_id"]
-    ln_factor = {
-        name: value
-        for name, value in zip(tow_id, first.ln_factor.tolist(), strict=True)
-        if math.isfinite(value)
-    }
+    first, ln_factor = estimate_roughly(make_observations(c, {}))
     return estimate_season_factors(make_observations(c, ln_factor), first)
 
 

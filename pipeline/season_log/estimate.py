@@ -9,9 +9,14 @@ from pipeline.arrays import FloatArray
 from pipeline.quantiles import NORMAL
 from pipeline.season_log.archive import build_archive
 from pipeline.season_log.diagnosis import diagnose_seasons
-from pipeline.season_log.factors import BY_GPS, NOT_SETTLED, make_factor_table
-from pipeline.season_log.faults import Posterior, find_posterior, find_rough_posterior
-from pipeline.season_log.fit import build_model
+from pipeline.season_log.factors import (
+    BY_GPS,
+    NOT_SETTLED,
+    find_determined,
+    make_factor_table,
+)
+from pipeline.season_log.faults import find_posterior, find_rough_fit
+from pipeline.season_log.fit import Fit, build_model
 from pipeline.season_log.observation_model import AGEING
 from pipeline.season_log.priors import PRIORS
 from pipeline.season_log.tow_estimates import estimate_tows
@@ -80,16 +85,24 @@ class SeasonFactors:
         return NOT_SETTLED in own["source"]
 
 
-def estimate_roughly(tows: pl.DataFrame) -> Posterior:
-    """Return a rough estimate from the rows that `estimate_season_factors` takes.
+def estimate_roughly(tows: pl.DataFrame) -> tuple[Fit, dict[str, float]]:
+    """Fit the rows that `estimate_season_factors` takes, to a loose tolerance.
+
+    Returns:
+        The fit, and the ln factor of each tow's log by `tow_id`: 0 with dGPS; a tow whose log is
+        not determined is left out.
 
     Raises:
         BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
-    return find_rough_posterior(build_model(build_archive(tows, PRIORS), PRIORS))
+    fit = find_rough_fit(build_model(build_archive(tows, PRIORS), PRIORS))
+    archive = fit.model.archive
+    has_log = np.append(find_determined(fit), True)[archive.log]
+    tow_id = archive.frame["tow_id"].to_numpy()[has_log]
+    return fit, dict(zip(tow_id.tolist(), fit.ln_log_factor[has_log].tolist(), strict=True))
 
 
-def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -> SeasonFactors:
+def estimate_season_factors(tows: pl.DataFrame, near: Fit | None = None) -> SeasonFactors:
     """Estimate the log factors of all seasons at once, from repeat tows and plain GPS.
 
     Args:
@@ -108,7 +121,7 @@ def estimate_season_factors(tows: pl.DataFrame, near: Posterior | None = None) -
             `others_calibration_ln`, ln factor of the log by dGPS in other tows, null without, with
             its `_sd`; `force_sd`, of the load cell by its record, null without one;
             `temperature_known`, of the water.
-        near: a first estimate to begin at.
+        near: a first fit to begin at (`estimate_roughly`).
 
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others; `gps` with

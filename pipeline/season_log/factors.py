@@ -111,6 +111,11 @@ def find_refused(fit: Fit) -> BoolArray:
     return np.asarray((is_far | is_contradicted) & fit.model.archive.is_connected)
 
 
+def find_determined(fit: Fit) -> BoolArray:
+    """Return whether a log is connected with the anchor and its factor not refused, (logs,)."""
+    return np.asarray(fit.model.archive.is_connected & ~find_refused(fit))
+
+
 def _compare_repeat_tows(fit: Fit) -> FloatArray:
     """Return what repeat tows alone would add to the ln factor of each log, (logs,).
 

@@ -126,28 +126,28 @@ class Posterior:
         return np.where(self.has_log, self.fit.ln_log_factor, np.nan)
 
 
-def find_posterior(model: Model, near: Posterior | None = None) -> Posterior:
+def find_posterior(model: Model, near: Fit | None = None) -> Posterior:
     """Return the estimate of everything, with the faults that the archive shows.
 
     Args:
-        near: a rough estimate of the same tows, compared at other speeds.
+        near: a rough fit to the same tows, compared at other speeds.
     """
-    rough = find_rough_posterior(model, near).fit
+    rough = find_rough_fit(model, near)
     final = fit_model(model, rough.active, rough)
     converged = rough.has_converged and final.has_converged
     return _conclude(replace(final, has_converged=converged))
 
 
-def find_rough_posterior(model: Model, near: Posterior | None = None) -> Posterior:
-    """Return the same to `SEARCH_TOLERANCE`.
+def find_rough_fit(model: Model, near: Fit | None = None) -> Fit:
+    """Return a fit to `SEARCH_TOLERANCE`, with the faults that the archive shows.
 
     The search begins without altered boats. A log that was replaced looks like many tows pulled
     askew, and then is not missed; from a start where that cannot be, it is found.
     """
-    start = None if near is None else near.fit
+    start = near
     if start is None or not _have_same_effects(start.model, model):
         start = _search_faults(model, None, with_patterns=False)
-    return _conclude(_search_faults(model, start, with_patterns=True))
+    return _search_faults(model, start, with_patterns=True)
 
 
 def _have_same_effects(one: Model, other: Model) -> bool:

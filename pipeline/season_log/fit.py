@@ -8,12 +8,15 @@ iteration makes four steps together; they are repeated until nothing moves:
 2. effects u: Newton step with the observed information,
    u += C (X'P r - (u - mean) / prior variance),  C = (X'P X - missing + 1 / prior variance)^-1;
 3. variances: Fisher scoring of the restricted likelihood on the logarithms,
-   gradient_j = 1/2 tr[B_j (P r r'P - P + P X C X'P)],  information_ij = 1/2 tr(P B_i P B_j),
-   with B_j the derivative of the covariance by ln variance j, and a normal prior on each;
+   gradient_j = 1/2 tr[Z_j' (P r r'P - P + P X C X'P) Z_j],  information_ij = 1/2 |Z_i' P Z_j|^2,
+   with Z_j Z_j' what ln variance j adds to the covariance, which is also its derivative; and a
+   half-Cauchy prior on the standard deviation: with w = variance / scale^2, gradient
+   1/2 - w / (1 + w) and information w / (1 + w)^2;
 4. shares of altered gaps and askew tows: EM, accelerated by the missing information.
 
 P is the inverse covariance of the numbers, averaged over patterns. Sources: Patterson & Thompson
-1971 (REML); Dempster, Laird & Rubin 1977 (EM); Louis 1982 (information of mixtures).
+1971 (REML); Dempster, Laird & Rubin 1977 (EM); Louis 1982 (information of mixtures); Gelman 2006
+(half-Cauchy prior).
 """
 
 from dataclasses import dataclass, replace
@@ -48,10 +51,10 @@ ITERATIONS_WITHOUT_PATTERNS: Final = 4
 MAX_MISSING_INFORMATION: Final = 0.9
 """Share of the information on a pattern share beyond which EM is not accelerated further."""
 MAX_LN_VARIANCE_STEP: Final = 1.0
-MAX_TURN_BACK_RATIO: Final = 0.5
-"""Share of the last step of a ln variance that the next may go back. Where one boat was towed
-twice, the patterns move with the variance, which curves its density more than the expected
-information says: full steps then go to and fro for ever, so they are halved."""
+GAIN_LIMIT: Final = 0.5
+"""Share of the last step of a ln variance beyond which the next step has twice the gain, or half of
+it where it goes back. The patterns move with a variance, so that its density is flatter or more
+curved than the expected information says: full steps would creep, or go to and fro for ever."""
 
 
 @dataclass(frozen=True)
@@ -69,8 +72,8 @@ class Model:
         return linearize(a.usual_bend, a.force_n, ln_factor, a.reference_ln)
 
     @property
-    def prior_ln_variance(self) -> FloatArray:
-        """Prior means of the ln variances, in the order of `list_variance_names`."""
+    def ln_variance_scale(self) -> FloatArray:
+        """Ln of the squared prior scale of each variance, in the order of `list_variance_names`."""
         p = self.priors
         log_sd = [p.tow_log_sd] * len(p.era_starts)
         of_numbers = [p.tow_sd, p.tow_bend_sd, p.tow_gps_sd]
@@ -207,18 +210,19 @@ def fit_model(
     """
     priors = model.priors
     mode = model.effects.mean.copy()
-    ln_variance = model.prior_ln_variance
+    ln_variance = model.ln_variance_scale
     share = np.array([priors.altered_share, priors.askew_share])
     if start is not None:
         mode[start.active] = start.value
         ln_variance, share = start.ln_variance, start.share
     value = mode[active]
-    damping = np.ones(len(ln_variance))
+    unchanged = [group.leave_out_patterns() for group in model.groups]
+    gain = np.ones(len(ln_variance))
     last_step = np.zeros(len(ln_variance))
     for iteration in range(MAX_ITERATIONS):
         is_warming_up = start is None and iteration < ITERATIONS_WITHOUT_PATTERNS
-        pattern_share = share if with_patterns and not is_warming_up else None
-        linear, boats = _judge_all_patterns(model, active, value, ln_variance, pattern_share)
+        groups = model.groups if with_patterns and not is_warming_up else unchanged
+        linear, boats = _judge_all_patterns(model, groups, active, value, ln_variance, share)
         value_step, covariance = _step_effects_by_gls(model, active, value, boats)
         ln_variance_step = _step_variances_by_reml(model, ln_variance, covariance, boats)
         logit_step = _step_shares_by_em(model, share, boats)
@@ -235,21 +239,21 @@ def fit_model(
         steps = np.concatenate([value_step, ln_variance_step, logit_step])
         if np.abs(steps).max() < tolerance and not is_warming_up:
             return fit
-        turns_back = ln_variance_step * last_step < -MAX_TURN_BACK_RATIO * last_step**2
-        damping = np.where(turns_back, 0.5 * damping, damping)
+        gain = _adapt_gain(gain, ln_variance_step, last_step)
         last_step = ln_variance_step
         value = value + value_step
-        ln_variance = ln_variance + damping * ln_variance_step
+        ln_variance = ln_variance + _limit_step(gain * ln_variance_step)
         share = scipy.special.expit(scipy.special.logit(share) + logit_step)
     return replace(fit, has_converged=False)
 
 
 def _judge_all_patterns(
     model: Model,
+    groups: list[BoatGroup],
     active: IntArray,
     value: FloatArray,
     ln_variance: FloatArray,
-    share: FloatArray | None,
+    share: FloatArray,
 ) -> tuple[Linearization, list[GroupPosterior]]:
     """Return the forward model and the posterior of the patterns of every boat."""
     archive, effects = model.archive, model.effects
@@ -261,7 +265,7 @@ def _judge_all_patterns(
     variance = np.exp(ln_variance)
     boats = [
         judge_patterns(group, archive, linear, design, residual, variance, share, model.priors)
-        for group in model.groups
+        for group in groups
     ]
     return linear, boats
 
@@ -296,16 +300,32 @@ def _step_variances_by_reml(
         squared_residual = np.swapaxes(weighted, 1, 2) @ b.weighted_residual
         by_effects = b.precision_design @ covariance @ np.swapaxes(b.precision_design, 1, 2)
         excess = squared_residual - b.mean_precision + by_effects
-        gradient += 0.5 * np.tensordot(b.parts, excess, axes=3)
-        precision_part = b.mean_precision @ b.parts
-        transposed = np.swapaxes(precision_part, 2, 3)
-        information += 0.5 * precision_part.reshape(v, -1) @ transposed.reshape(v, -1).T
-    prior_precision = model.priors.ln_variance_sd**-2.0
+        n_boats, numbers, _, tows = b.random_design.shape
+        z = b.random_design.reshape(n_boats, numbers, v * tows)
+        own_excess = (z * (excess @ z)).sum(axis=(0, 1))  # diagonal of Z' excess Z
+        gradient += 0.5 * own_excess.reshape(v, tows).sum(axis=1)
+        shared_precision = np.swapaxes(z, 1, 2) @ (b.mean_precision @ z)  # Z' P Z
+        square = (shared_precision**2).sum(axis=0).reshape(v, tows, v, tows)
+        information += 0.5 * square.sum(axis=(1, 3))
+    ratio = np.exp(ln_variance - model.ln_variance_scale)
     # A variance that shrinks takes its own gradient with it: that curves the density of its ln.
-    information += np.diag(prior_precision + np.maximum(-gradient, 0.0))
-    gradient -= prior_precision * (ln_variance - model.prior_ln_variance)
-    step = np.linalg.solve(information, gradient)
+    information += np.diag(ratio / (1.0 + ratio) ** 2 + np.maximum(-gradient, 0.0))
+    gradient += 0.5 - ratio / (1.0 + ratio)
+    step: FloatArray = np.linalg.solve(information, gradient).astype(np.float64)
+    return _limit_step(step)
+
+
+def _limit_step(step: FloatArray) -> FloatArray:
+    """Return a step of ln variances that nowhere exceeds `MAX_LN_VARIANCE_STEP`, (v,)."""
     return np.asarray(np.clip(step, -MAX_LN_VARIANCE_STEP, MAX_LN_VARIANCE_STEP))
+
+
+def _adapt_gain(gain: FloatArray, step: FloatArray, last_step: FloatArray) -> FloatArray:
+    """Return by how much the step of each ln variance is multiplied (Jacobs 1988), (v,)."""
+    limit = GAIN_LIMIT * last_step**2
+    goes_on = step * last_step > limit
+    turns_back = step * last_step < -limit
+    return gain * np.where(goes_on, 2.0, np.where(turns_back, 0.5, 1.0))
 
 
 def _step_shares_by_em(model: Model, share: FloatArray, boats: list[GroupPosterior]) -> FloatArray:
@@ -318,9 +338,10 @@ def _step_shares_by_em(model: Model, share: FloatArray, boats: list[GroupPosteri
     possible = np.array([p.altered_prior_gaps, p.askew_prior_tows])
     expected = possible * [p.altered_share, p.askew_share]
     missing = np.zeros((2, 2))
+    for group in model.groups:
+        possible += (group.is_possible @ group.pattern_kind).sum(axis=0)
     for b in boats:
         of_boat = b.probability @ b.group.pattern_kind
-        possible += (b.group.is_possible @ b.group.pattern_kind).sum(axis=0)
         expected += of_boat.sum(axis=0)
         missing += np.diag(of_boat.sum(axis=0)) - of_boat.T @ of_boat
     new_share = expected / possible

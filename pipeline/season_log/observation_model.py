@@ -189,48 +189,51 @@ class Effects:
 
     def design(self, linear: Linearization, chosen: IntArray) -> FloatArray:
         """Return the design matrix: derivatives of the numbers by some effects, (n, 3, chosen)."""
-        derivative = np.stack([linear.by_channel[c] for c in self.channel[chosen]], axis=2)
-        return np.asarray(derivative * self.covariate[:, None, chosen])
+        channels = list(linear.by_channel)
+        by_channel = np.stack(list(linear.by_channel.values()), axis=2)
+        place = [channels.index(channel) for channel in self.channel[chosen]]
+        return np.asarray(by_channel[:, :, place] * self.covariate[:, None, chosen])
 
 
 def list_effects(archive: Archive, priors: Priors) -> Effects:
     """Return every effect that an archive may show."""
-    permanent = _list_permanent_effects(archive, priors)
-    return Effects(
-        (*permanent, *_list_season_faults(archive, priors), *_list_log_faults(archive, priors))
-    )
+    effects = list(_list_permanent_effects(archive, priors))
+    effects += _list_season_faults(archive, priors)
+    effects += _list_log_faults(archive, priors)
+    return Effects(tuple(effects))
 
 
 def _list_permanent_effects(archive: Archive, priors: Priors) -> Iterator[Effect]:
     for place, log in enumerate(archive.logs.iter_rows(named=True)):
         own = (archive.log == place).astype(np.float64)
-        key = (log["season"], log["part"])
+        season, part = log["season"], log["part"]
         if log["calibrated"]:
-            yield Effect(LOG_SCALE, *key, own, log["prior_sd"], log["prior_ln"])
+            yield Effect(LOG_SCALE, season, part, own, sd=log["prior_sd"], mean=log["prior_ln"])
         else:
-            yield Effect(LOG_SCALE, *key, own, priors.log_sd)
-        yield Effect(SEASON_BEND, *key, own, priors.season_bend_sd)
+            yield Effect(LOG_SCALE, season, part, own, sd=priors.log_sd)
+        yield Effect(SEASON_BEND, season, part, own, sd=priors.season_bend_sd)
         if log["has_gps"]:
-            yield Effect(GPS_SCALE, *key, own, priors.gps_season_sd)
+            yield Effect(GPS_SCALE, season, part, own, sd=priors.gps_season_sd)
     is_unrecorded = ~archive.frame["temperature_known"].to_numpy()
+    recorded_force_sd = archive.column("force_sd")
     for year in _list_seasons(archive):
         in_season = archive.season == year
-        records = archive.frame.filter(season=year)["force_sd"].drop_nulls().to_numpy()
+        records = recorded_force_sd[in_season & np.isfinite(recorded_force_sd)]
         force_sd = float(np.median(records)) if len(records) else priors.force_sd
-        yield Effect(FORCE, year, 0, in_season.astype(np.float64), force_sd)
+        yield Effect(FORCE, year, 0, in_season.astype(np.float64), sd=force_sd)
         if (in_season & is_unrecorded).any():
             unrecorded = (in_season & is_unrecorded).astype(np.float64)
-            yield Effect(WATER, year, 0, unrecorded, priors.water_sd)
+            yield Effect(WATER, year, 0, unrecorded, sd=priors.water_sd)
     years: FloatArray = archive.season - float(priors.reference_year)
-    ageing, weight, length = (
-        priors.ageing_per_year,
-        priors.weight_elasticity,
-        priors.length_elasticity,
-    )
-    yield Effect(AGEING, None, 0, years, ageing.sd, ageing.mean)
-    yield Effect(WEIGHT, None, 0, _compute_ln_change(archive, "weight_kg"), weight.sd, weight.mean)
+    ln_weight = _compute_ln_change(archive, "weight_kg")
     ln_length = _compute_ln_change(archive, "waterline_length_m")
-    yield Effect(LENGTH, None, 0, ln_length, length.sd, length.mean)
+    of_boats = (
+        (AGEING, years, priors.ageing_per_year),
+        (WEIGHT, ln_weight, priors.weight_elasticity),
+        (LENGTH, ln_length, priors.length_elasticity),
+    )
+    for name, covariate, prior in of_boats:
+        yield Effect(name, None, 0, covariate, sd=prior.sd, mean=prior.mean)
 
 
 def _list_season_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
@@ -238,27 +241,27 @@ def _list_season_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
     p = priors.fault_probability
     in_seasons = [(year, archive.season == year) for year in _list_seasons(archive)]
     for year, own in in_seasons:
-        yield Effect(FORCE, year, 0, own * 1.0, priors.force_fault_sd, probability=p)
+        yield Effect(FORCE, year, 0, own * 1.0, sd=priors.force_fault_sd, probability=p)
     for year, own in in_seasons:
-        yield Effect(ZERO, year, 0, own * 1.0, priors.zero_fault_n, probability=p)
+        yield Effect(ZERO, year, 0, own * 1.0, sd=priors.zero_fault_n, probability=p)
     for year, own in in_seasons:
         if (ramp := _make_ramp(archive.day, own)) is not None:
-            yield Effect(ZERO_DRIFT, year, 0, ramp, priors.zero_fault_n, probability=p)
+            yield Effect(ZERO_DRIFT, year, 0, ramp, sd=priors.zero_fault_n, probability=p)
     for year, _ in in_seasons[1:]:
         later = (archive.season >= year).astype(np.float64)
         fleet = priors.fleet_probability
-        yield Effect(FLEET, year, 0, later, priors.fleet_fault_sd, probability=fleet)
+        yield Effect(FLEET, year, 0, later, sd=priors.fleet_fault_sd, probability=fleet)
 
 
 def _list_log_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
     """List the faults that a log without dGPS may have: a trend, and an unreported replacement."""
     p = priors.fault_probability
-    logs = [(year, part) for year, part in archive.logs.select("season", "part").iter_rows()]
-    for place, key in enumerate(logs):
+    logs = archive.logs.select("season", "part").rows()
+    for place, (season, part) in enumerate(logs):
         if (ramp := _make_ramp(archive.day, archive.log == place)) is not None:
-            yield Effect(TREND, *key, ramp, priors.trend_fault_sd, probability=p)
+            yield Effect(TREND, season, part, ramp, sd=priors.trend_fault_sd, probability=p)
     tow_id = archive.frame["tow_id"].to_numpy()
-    for place, key in enumerate(logs):
+    for place, (season, part) in enumerate(logs):
         own = archive.log == place
         starts = []
         for day in np.unique(archive.day[own]):
@@ -266,9 +269,15 @@ def _list_log_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
             if MIN_TOWS_AFTER_CHANGE <= after.sum() <= own.sum() - MIN_TOWS_AFTER_CHANGE:
                 starts.append((after, tow_id[after & (archive.day == day)].min()))
         for after, first_tow in starts:
-            sd = priors.change_fault_sd
-            each = p / len(starts)
-            yield Effect(CHANGE, *key, after * 1.0, sd, probability=each, first_tow=str(first_tow))
+            yield Effect(
+                name=CHANGE,
+                season=season,
+                part=part,
+                covariate=after * 1.0,
+                sd=priors.change_fault_sd,
+                probability=p / len(starts),
+                first_tow=str(first_tow),
+            )
 
 
 def _list_seasons(archive: Archive) -> list[int]:

@@ -12,7 +12,7 @@ pattern adds.
 A boat with T tows has 2 T patterns and 3 T numbers, so that all patterns can be enumerated.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -33,14 +33,19 @@ class BoatGroup:
         is_after: (p, T) whether a tow is after the alteration that the pattern supposes.
         is_askew: (p, T) whether the pattern supposes that a tow was pulled askew.
         is_possible: (b, p) whether the boat can have the pattern: askew are early tows only.
-        shared_years: (b, T, T) years of drift that two tows have in common.
+        years: (b, T) since the first tow of the boat.
     """
 
     tow: IntArray
     is_after: BoolArray
     is_askew: BoolArray
     is_possible: BoolArray
-    shared_years: FloatArray
+    years: FloatArray
+
+    @property
+    def shared_years(self) -> FloatArray:
+        """Years of drift that two tows have in common, (b, T, T)."""
+        return np.minimum(self.years[:, :, None], self.years[:, None, :])
 
     @property
     def numbers(self) -> IntArray:
@@ -52,6 +57,15 @@ class BoatGroup:
         """Whether a pattern is an alteration, and whether it is a tow askew, (p, 2)."""
         kinds = np.stack([self.is_after.any(axis=1), self.is_askew.any(axis=1)], axis=1)
         return kinds.astype(np.float64)
+
+    def leave_out_patterns(self) -> "BoatGroup":
+        """Return the boats with pattern 0 alone: nothing happened to any of them."""
+        return replace(
+            self,
+            is_after=self.is_after[:1],
+            is_askew=self.is_askew[:1],
+            is_possible=self.is_possible[:, :1],
+        )
 
 
 def group_boats(archive: Archive, priors: Priors) -> list[BoatGroup]:
@@ -69,23 +83,25 @@ def group_boats(archive: Archive, priors: Priors) -> list[BoatGroup]:
             is_after[k, k:] = True
         for k in range(tows):
             is_askew[tows + k, k] = True
-        years = archive.season[tow] - archive.season[tow[:, :1]]
         groups.append(
             BoatGroup(
                 tow=tow,
                 is_after=is_after,
                 is_askew=is_askew,
                 is_possible=np.hstack([np.ones(tow.shape, dtype=bool), is_early[tow]]),
-                shared_years=np.minimum(years[:, :, None], years[:, None, :]),
+                years=archive.season[tow] - archive.season[tow[:, :1]],
             )
         )
     return groups
 
 
-def compute_variance_parts(
+def compute_random_design(
     group: BoatGroup, archive: Archive, linear: Linearization, variance: FloatArray
 ) -> FloatArray:
-    """Return what each variance component adds to the covariance of the boats' numbers.
+    """Return the design Z of the random effects between tows, one standard deviation of each.
+
+    Component j has an effect per tow: Z_j Z_j' is what it adds to the covariance of the numbers,
+    and the derivative of that covariance by ln variance j.
 
     Args:
         variance: (v,) of ln Cw, bend and GPS between tows, of the log between tows per era and of
@@ -93,41 +109,45 @@ def compute_variance_parts(
             (`fit.list_variance_names`).
 
     Returns:
-        (v, b, 3 T, 3 T). It is also the derivative of the covariance by ln variance.
+        (b, 3 T, v, T). An effect is of its tow alone; but a drift since the tow before is of all
+        later tows too.
     """
     boats, tows = group.tow.shape
+    sd = np.sqrt(variance)
     by_log = linear.by_channel["log"][group.tow]
     by_zero = linear.by_channel["zero"][group.tow]
     by_level = linear.by_boat[group.tow][..., 0]
-    parts = np.zeros((len(variance), boats, tows, 3, tows, 3))
+    drift_sd = sd[-1] * np.sqrt(np.diff(group.years, axis=1, prepend=0.0))
+    design = np.zeros((boats, tows, 3, len(variance), tows))
     for k in range(tows):
         for number in (LEVEL, BEND, GPS):
-            parts[number, :, k, number, k, number] = variance[number]
+            design[:, k, number, number, k] = sd[number]
         component = 3 + archive.log_variance[group.tow[:, k]]
-        of_log = by_log[:, k, :, None] * by_log[:, k, None, :]
-        parts[component, np.arange(boats), k, :, k] = variance[component, None, None] * of_log
-        of_zero = by_zero[:, k, :, None] * by_zero[:, k, None, :]
-        parts[-2, :, k, :, k] = variance[-2] * of_zero
-    drift = variance[-1] * group.shared_years
-    of_drift = by_level[:, :, :, None, None] * drift[:, :, None, :, None]
-    parts[-1] = of_drift * by_level[:, None, None, :, :]
-    return parts.reshape(len(variance), boats, 3 * tows, 3 * tows)
+        design[np.arange(boats), k, :, component, k] = sd[component, None] * by_log[:, k]
+        design[:, k, :, -2, k] = sd[-2] * by_zero[:, k]
+        design[:, k:, :, -1, k] = drift_sd[:, k, None, None] * by_level[:, k:]
+    return design.reshape(boats, 3 * tows, len(variance), tows)
 
 
 def compute_unchanged_covariance(
-    group: BoatGroup, archive: Archive, linear: Linearization, parts: FloatArray, priors: Priors
+    group: BoatGroup,
+    archive: Archive,
+    linear: Linearization,
+    random_design: FloatArray,
+    priors: Priors,
 ) -> FloatArray:
     """Return the covariance V of the numbers of boats that nothing happened to, (b, 3 T, 3 T)."""
     boats, tows = group.tow.shape
     known = np.zeros((boats, tows, 3, tows, 3))
     for k in range(tows):
         known[:, k, :, k] = archive.y_covariance[group.tow[:, k]]
-    by_boat = linear.by_boat[group.tow].reshape(boats, 3 * tows, 2)
-    prior = by_boat * [priors.level_sd, priors.bend_sd]
-    prior_covariance = prior @ np.swapaxes(prior, 1, 2)
-    return np.asarray(
-        known.reshape(boats, 3 * tows, 3 * tows) + parts.sum(axis=0) + prior_covariance
-    )
+    by_boat = linear.by_boat[group.tow] * [priors.level_sd, priors.bend_sd]
+    of_boat = by_boat.reshape(boats, 3 * tows, 2)
+    between_tows = random_design.reshape(boats, 3 * tows, -1)
+    covariance = known.reshape(boats, 3 * tows, 3 * tows)
+    for design in (of_boat, between_tows):
+        covariance = covariance + design @ np.swapaxes(design, 1, 2)
+    return np.asarray(covariance)
 
 
 def compute_pattern_factor(group: BoatGroup, linear: Linearization, priors: Priors) -> FloatArray:
@@ -146,7 +166,7 @@ class GroupPosterior:
     Attributes:
         group: the boats.
         design: (b, 3 T, k) derivatives of their numbers by the effects.
-        parts: (v, b, 3 T, 3 T) what each variance adds to their covariance.
+        random_design: (b, 3 T, v, T) of the random effects between tows.
         inverse: (b, 3 T, 3 T) inverse covariance of the numbers of an unchanged boat.
         inverse_a: (b, p, 3 T, 2) `inverse` times the factor A of each pattern, and
         gain: (b, p, 2, 3 T): inverse covariance under a pattern is `inverse` - `inverse_a` `gain`.
@@ -156,7 +176,7 @@ class GroupPosterior:
 
     group: BoatGroup
     design: FloatArray
-    parts: FloatArray
+    random_design: FloatArray
     inverse: FloatArray
     inverse_a: FloatArray
     gain: FloatArray
@@ -217,7 +237,7 @@ def judge_patterns(
     design: FloatArray,
     residual: FloatArray,
     variance: FloatArray,
-    share: FloatArray | None,
+    share: FloatArray,
     priors: Priors,
 ) -> GroupPosterior:
     """Return the posterior of every pattern of the boats of a group (the E-step of EM).
@@ -225,9 +245,8 @@ def judge_patterns(
     Args:
         design: (n, 3, k) of all tows.
         residual: (n, 3) observed less predicted numbers of all tows.
-        variance: (v,) variance components, as in `compute_variance_parts`.
-        share: (2,) of gaps with an unreported alteration, and of early tows pulled askew; None
-            where nothing can have happened to a boat.
+        variance: (v,) variance components, as in `compute_random_design`.
+        share: (2,) of gaps with an unreported alteration, and of early tows pulled askew.
     """
     boats, tows = group.tow.shape
     own = np.repeat(residual[group.tow][:, None], len(group.is_askew), axis=1)
@@ -235,25 +254,24 @@ def judge_patterns(
     own = own.reshape(boats, -1, 3 * tows)
 
     # Inverse and determinant of V + A A', by Woodbury's identity.
-    parts = compute_variance_parts(group, archive, linear, variance)
-    unchanged = compute_unchanged_covariance(group, archive, linear, parts, priors)
+    random_design = compute_random_design(group, archive, linear, variance)
+    unchanged = compute_unchanged_covariance(group, archive, linear, random_design, priors)
     inverse: FloatArray = np.linalg.inv(unchanged).astype(np.float64)
     a = compute_pattern_factor(group, linear, priors)
     inverse_a = inverse[:, None] @ a
     capacitance = np.eye(2) + np.swapaxes(a, 2, 3) @ inverse_a
-    gain: FloatArray = np.linalg.solve(capacitance, np.swapaxes(inverse_a, 2, 3)).astype(np.float64)
+    gain = np.linalg.inv(capacitance) @ np.swapaxes(inverse_a, 2, 3)
     ln_determinant = np.linalg.slogdet(unchanged)[1][:, None] + np.linalg.slogdet(capacitance)[1]
 
     weighted_residual = own @ inverse - (inverse_a @ (gain @ own[..., None]))[..., 0]
     ln_density = -0.5 * ((own * weighted_residual).sum(axis=2) + ln_determinant)
 
-    ln_odds = np.full(2, -np.inf) if share is None else scipy.special.logit(share)
-    ln_prior = np.where(group.pattern_kind > 0.0, ln_odds, 0.0).sum(axis=1)
+    ln_prior = group.pattern_kind @ scipy.special.logit(share)
     ln_prior = np.where(group.is_possible, ln_prior, -np.inf)
     return GroupPosterior(
         group=group,
         design=design[group.tow].reshape(boats, 3 * tows, -1),
-        parts=parts,
+        random_design=random_design,
         inverse=inverse,
         inverse_a=inverse_a,
         gain=gain,

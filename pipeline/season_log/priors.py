@@ -1,8 +1,9 @@
 """Every prior of the joint model, in one table. No arithmetic here.
 
 Behind each number stand its unit and its source. A standard deviation of a logarithm is a ratio:
-0.01 is 1 %. *inferred*: no source gives it; *fitted*: only where a search in the archive begins,
-drawn to it as by one repeat tow. P2015 is the presentation of 24 January 2015 (docs/sources.md).
+0.01 is 1 %. *inferred*: no source gives it; *fitted*: the archive shows it, and the number is the
+scale of a half-Cauchy prior (Gelman 2006), by which all smaller sizes are about as likely. P2015 is
+the presentation of 24 January 2015 (docs/sources.md).
 """
 
 from dataclasses import dataclass
@@ -43,7 +44,6 @@ class Priors:
     tow_bend_sd: float = 0.01  # q; fitted
     tow_gps_sd: float = 0.008  # ln(GPS / log); fitted
     tow_zero_n: float = 1.0  # N, zero of the load cell; fitted
-    ln_variance_sd: float = 1.5  # every ln variance; inferred: counts as one repeat tow
 
     # Bend of all boats of a season without dGPS. A hull is no hyperbola, so bends towed at speeds
     # that are a log's error off move together, by as much as that error itself moves them. With

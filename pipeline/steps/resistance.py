@@ -102,7 +102,8 @@ def window_means(
     if is_robust:
         weight = weigh_seconds(blocks, windows.mask)
         samples = np.maximum((weight * blocks.n).sum(axis=1), MIN_WEIGHT)
-        means |= {name: (weight * averaged[name]).sum(axis=1) / samples for name in weighted}
+        for name in weighted:
+            means[name] = np.einsum("rs,rs->r", weight, averaged[name]) / samples
     return means | {"seconds_sd": _sd_of_seconds(blocks, windows.mask, weight)}
 
 

@@ -215,11 +215,12 @@ class Faults:
 class Ends:
     """Running sums from which the ends of any window are compared, shape (runs, seconds).
 
+    Speed, force and wind are in units of the difference that is allowed between the ends.
+
     Attributes:
         speed, speed_time: sums up to each second of the speed less its mean, and of that times the
             second; one column more.
         speed_ends, force_ends, wind_ends: means over `END_SECONDS` from every second on.
-        force_limit: allowed difference of the force between the ends, shape (runs, 1).
     """
 
     speed: FloatArray
@@ -227,15 +228,15 @@ class Ends:
     speed_ends: FloatArray
     force_ends: FloatArray
     wind_ends: FloatArray
-    force_limit: FloatArray
 
     @classmethod
     def from_blocks(cls, blocks: RunBlocks) -> Self:
         """Sum the blocks of every run."""
-        speed = blocks.block_means("log1_v")
-        force = blocks.block_means("force")
-        wind = blocks.block_means("wind_v")
-        force_median, _ = robust_moments(force, blocks.inside)
+        force_n = blocks.block_means("force")
+        force_limit_n = FORCE_ENDS_RATIO * np.abs(compute_medians(force_n, blocks.inside))
+        force = force_n / np.maximum(force_limit_n, 1e-9)
+        speed = blocks.block_means("log1_v") / SPEED_ENDS_M_S
+        wind = blocks.block_means("wind_v") / WIND_ENDS_M_S
         centred = speed - speed.mean(axis=1, keepdims=True)
         return cls(
             speed=running_sum(centred),
@@ -243,7 +244,6 @@ class Ends:
             speed_ends=span_sum(running_sum(speed), END_SECONDS) / END_SECONDS,
             force_ends=span_sum(running_sum(force), END_SECONDS) / END_SECONDS,
             wind_ends=span_sum(running_sum(wind), END_SECONDS) / END_SECONDS,
-            force_limit=np.maximum(FORCE_ENDS_RATIO * np.abs(force_median), 1e-9),
         )
 
     def compare(self, size: int) -> tuple[FloatArray, FloatArray]:
@@ -253,10 +253,10 @@ class Ends:
             For speed, the larger of the difference between the ends and the rise of a straight
             line; and for force and wind, the larger of both. Shape (runs, windows) each.
         """
-        drift = np.abs(self._speed_slope(size)) * size / SPEED_ENDS_M_S
-        speed = np.abs(ends_difference(self.speed_ends, size)) / SPEED_ENDS_M_S
-        force = np.abs(ends_difference(self.force_ends, size)) / self.force_limit
-        wind = np.abs(ends_difference(self.wind_ends, size)) / WIND_ENDS_M_S
+        drift = np.abs(self._speed_slope(size)) * size
+        speed = np.abs(ends_difference(self.speed_ends, size))
+        force = np.abs(ends_difference(self.force_ends, size))
+        wind = np.abs(ends_difference(self.wind_ends, size))
         return np.maximum(drift, speed), np.maximum(force, wind)
 
     def _speed_slope(self, size: int) -> FloatArray:
@@ -295,7 +295,7 @@ def find_best_windows(
         is_allowed = (span_sum(usable, size) == size) & (speed_excess <= 1.0)
         score = np.where(is_allowed, np.round(score, SCORE_DECIMALS), -np.inf)
         start = score.argmax(axis=1)
-        highest = np.take_along_axis(score, start[:, None], 1)[:, 0]
+        highest = score.max(axis=1)
         is_better = highest > best_score
         best_start = np.where(is_better, start, best_start)
         best_length = np.where(is_better, size, best_length)
@@ -334,26 +334,24 @@ def measure_ramp(speed: FloatArray, is_present: BoolArray) -> IntArray:
     """Return the length of the ramp with which each run begins, in blocks; 0 without one.
 
     By least squares: a straight line up (or down) to second p, level from there, for every p up to
-    `MAX_RAMP_S`; the best p, if the line spans at least `MIN_RAMP_M_S`.
+    `MAX_RAMP_S`; the best p, if the line spans at least `MIN_RAMP_M_S`. The line is 0 from p on, so
+    that its products with the centred speed need the first p seconds alone.
     """
     count = np.maximum(is_present.sum(axis=1), 1)
     mean = np.where(is_present, speed, 0.0).sum(axis=1) / count
-    centred = np.where(is_present, speed - mean[:, None], 0.0)
-    second = np.arange(speed.shape[1])
-    best_gain, best_length, best_span = np.zeros((3, len(speed)))
-    for p in range(1, MAX_RAMP_S + 1):
-        line = np.where(is_present, np.clip(p - second, 0, None), 0.0)
-        line_mean = line.sum(axis=1, keepdims=True) / count[:, None]
-        line = np.where(is_present, line - line_mean, 0.0)
-        norm = np.maximum((line * line).sum(axis=1), 1e-12)
-        product = (line * centred).sum(axis=1)
-        gain = product**2 / norm
-        is_better = gain > best_gain
-        best_gain = np.where(is_better, gain, best_gain)
-        best_length = np.where(is_better, p, best_length)
-        best_span = np.where(is_better, np.abs(product) / norm * p, best_span)
-    is_ramp = best_span >= MIN_RAMP_M_S
-    return np.where(is_ramp, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
+    beginning = is_present[:, :MAX_RAMP_S].astype(np.float64)
+    centred = beginning * (speed[:, :MAX_RAMP_S] - mean[:, None])
+    lengths = np.arange(1, MAX_RAMP_S + 1)
+    second = np.arange(beginning.shape[1])
+    lines = np.clip(lengths - second[:, None], 0, None)  # (seconds, lengths)
+
+    product = centred @ lines
+    norm = beginning @ lines**2 - (beginning @ lines) ** 2 / count[:, None]
+    norm = np.maximum(norm, 1e-12)
+    best = (product**2 / norm).argmax(axis=1)
+    run = np.arange(len(speed))
+    span = np.abs(product[run, best]) / norm[run, best] * lengths[best]
+    return np.where(span >= MIN_RAMP_M_S, lengths[best] + RAMP_MARGIN_S, 0)
 
 
 def measure_wind_change(blocks: RunBlocks) -> FloatArray:
@@ -368,10 +366,17 @@ def measure_wind_change(blocks: RunBlocks) -> FloatArray:
 
 def robust_moments(values: FloatArray, is_present: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Return median and robust sd of each row, shape (runs, 1); 0 for an empty row."""
-    is_empty = ~is_present.any(axis=1, keepdims=True)
-    filled = np.where(is_present, values, np.where(is_empty, 0.0, np.nan))
-    median = np.nanmedian(filled, axis=1, keepdims=True)
-    return median, MAD_TO_SD * np.nanmedian(np.abs(filled - median), axis=1, keepdims=True)
+    median = compute_medians(values, is_present)
+    return median, MAD_TO_SD * compute_medians(np.abs(values - median), is_present)
+
+
+def compute_medians(values: FloatArray, is_present: BoolArray) -> FloatArray:
+    """Return the median of the present values of each row, shape (runs, 1); 0 for an empty row."""
+    count = is_present.sum(axis=1, keepdims=True)
+    ordered = np.sort(np.where(is_present, values, np.inf), axis=1)
+    middle = np.hstack([np.maximum(count - 1, 0) // 2, count // 2])
+    median = np.take_along_axis(ordered, middle, axis=1).mean(axis=1, keepdims=True)
+    return np.where(count > 0, median, 0.0)
 
 
 def widen(values: FloatArray) -> FloatArray:
@@ -385,8 +390,11 @@ def widen(values: FloatArray) -> FloatArray:
 
 
 def running_sum(values: FloatArray) -> FloatArray:
-    """Return sums of each row up to every place, beginning with 0: one column more."""
-    return np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
+    """Return sums of each row up to every place, beginning with 0: one column more.
+
+    They are stored by column, so that the differences over spans of a size are quick.
+    """
+    return np.asfortranarray(np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0))))
 
 
 def span_sum(running: FloatArray, size: int) -> FloatArray:

@@ -188,26 +188,29 @@ def make_log_key(season: pl.Expr, part: pl.Expr) -> pl.Expr:
     return pl.concat_str(named, separator="/")
 
 
-def combine(budget: pl.DataFrame) -> pl.DataFrame:
-    """Add a budget up per tow and speed.
+def combine(inputs: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
+    """Return the combined uncertainty of Cw, per tow and speed, and the interval that follows.
 
     Args:
-        budget: rows of `make_budget`.
+        inputs: as of `make_budget`.
+        assumed: what the archive does not show.
 
     Returns:
-        One row per tow and speed, in the order of `budget`: `tow_id, speed_ratio, u_ratio`,
-        `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`: the 95 % bounds of Cw / its value, a
-        t interval on the logarithm.
+        One row per row of `inputs`: `tow_id, speed_ratio, u_ratio`, `dof` (Welch-Satterthwaite),
+        and `lo_ratio, hi_ratio`: the 95 % bounds of Cw / its value, a t interval on the logarithm.
     """
-    variance = pl.col("u_ratio") ** 2
-    total = (
-        budget.group_by("tow_id", "speed_ratio", maintain_order=True)
-        .agg(
-            u_ratio=variance.sum().sqrt(),
-            spread=(variance**2 / pl.col("dof").clip(lower_bound=1.0)).sum(),
-        )
-        .with_columns(dof=(pl.col("u_ratio") ** 4 / pl.col("spread")).fill_nan(np.inf))
-        .drop("spread")
+    components = list_components(assumed).values()
+    variances = [component.effect.cast(pl.Float64) ** 2 for component in components]
+    spreads = [
+        variance**2 / component.dof.clip(lower_bound=1.0)
+        for variance, component in zip(variances, components, strict=True)
+    ]
+    variance = pl.sum_horizontal(variances)
+    total = inputs.select(
+        "tow_id",
+        "speed_ratio",
+        u_ratio=variance.sqrt(),
+        dof=(variance**2 / pl.sum_horizontal(spreads)).fill_nan(np.inf),
     )
     quantile = t_quantile(total["dof"].clip(1.0).to_numpy())
     half_width = total["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)

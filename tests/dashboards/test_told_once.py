@@ -55,6 +55,26 @@ def test_a_narrow_terminal_keeps_numbers_whole_and_names_what_it_leaves_out():
         assert any("Weight" in line for line in lines)
 
 
+def test_a_table_of_any_width_loses_no_letter_and_is_no_wider():
+    rows = [
+        {
+            "name": "Razende Snol",
+            "note": "het gelijkmatige deel",
+            "why": "gemiddelde van quotiënten",
+        },
+        {"name": "Vlet", "note": "alles", "why": "verhouding van robuuste gemiddelden"},
+    ]
+    made = Document(Language("en")).table(rows, "name note why")
+    for width in range(20, 110):
+        table, _, left_out = to_text(made, width=width).partition("Left out")
+        assert max(map(len, table.splitlines())) <= width
+        for name in ("name", "note", "why"):
+            title = Language("en").get_title(name)
+            if title not in left_out:
+                words = " ".join(row[name] for row in rows).split()
+                assert [word for word in words if word not in table.split()] == [], (width, name)
+
+
 def test_a_terminal_shows_headings_in_bold_and_verdicts_in_colour_and_says_the_same():
     html = '<h1>Vlet</h1><p data-said="let_go good">In orde.</p><p>Klaar.</p>'
     coloured = to_text(html, coloured=True)

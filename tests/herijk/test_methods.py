@@ -5,6 +5,7 @@ import json
 import pytest
 
 from assets.lake import Folders
+from dashboards.language import Language
 from pipeline.method.options import Steps
 from pipeline.method.reading import list_shipped_methods
 from tests.conftest import METHODS, quickly
@@ -42,7 +43,8 @@ def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeyp
         ("wind", "side", 0.3)
     ]
     assert report["effect"]["causes"]
-    assert "wind.side" in herijk("compare", "concept-rebased-2015", "ours.toml", *data)[1]
+    printed = herijk("compare", "concept-rebased-2015", "ours.toml", *data)[1]
+    assert Language("en").name_option("wind.side") in printed
 
 
 @pytest.mark.more

@@ -8,15 +8,10 @@ from pathlib import Path
 import numpy as np
 import polars as pl
 import pytest
-from scipy.stats import binom, chi2
+from scipy.stats import chi2
 
-from pipeline import curve
 from pipeline.errors import BrokenPromiseError
 from pipeline.season_log import estimate_season_factors, faults, fit
-from pipeline.season_log.archive import build_archive
-from pipeline.season_log.factors import find_refused
-from pipeline.season_log.fit import build_model
-from pipeline.season_log.observation_model import linearize
 from pipeline.season_log.priors import PRIORS
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
@@ -25,7 +20,9 @@ PERFECT = replace(
     CLEAN, tow_noise=0.0, run_noise=1e-6, gps_run_error=0.0, gps_season_error=0.0, kappa_error=0.0
 )
 WORLDS = 4
-PHANTOM = Path(__file__).parents[1] / "data" / "phantom_tows.parquet"
+DATA = Path(__file__).parents[1] / "data"
+PHANTOM = DATA / "phantom_tows.parquet"
+CREEPING = DATA / "creeping_tows.parquet"
 IN_2010 = pl.col("season") == 2010
 FORCE_OF_2018 = (pl.col("season") == 2018) & (pl.col("instrument") == "force_scale")
 
@@ -58,21 +55,6 @@ def with_zeros(tows, sd_n):
     return tows.with_columns(ln_cw=pl.col("ln_cw") + share.log1p(), q=bend)
 
 
-@pytest.mark.parametrize("factor", [0.94, 1.06])
-def test_a_scale_error_does_what_refitting_the_hyperbola_does(factor):
-    a, b, v0 = 31.6, 4.44, 2.35
-    by_log = curve.cw(a * factor**2, curve.s_of_b(b / factor), v0)
-    r = (v0 / b) ** 2
-    q, force, reference = (np.array([x]) for x in (r / (1 - r), 300.0, 0.0))
-    at, above, below = (
-        linearize(q, force, np.array([math.log(factor) + x]), reference) for x in (0, 1e-6, -1e-6)
-    )
-    ln_ratio = math.log(by_log / curve.cw(a, curve.s_of_b(b), v0))
-    assert at.predicted[0, 0] == pytest.approx(ln_ratio, abs=1e-12)
-    difference = (above.predicted - below.predicted)[0, :2] / 2e-6
-    assert at.by_channel["log"][0, :2] == pytest.approx(difference, rel=1e-6)
-
-
 def test_without_noise_factors_are_exact_and_ageing_is_told_from_them():
     world = simulate(replace(PERFECT, ageing_per_year=0.005), 1000)
     found = estimate_season_factors(world.tows)
@@ -82,28 +64,18 @@ def test_without_noise_factors_are_exact_and_ageing_is_told_from_them():
 
 
 @pytest.mark.parametrize(("setup", "most"), [(CLEAN, 0.005), (HARD, 0.008)])
-def test_worlds_recover_2009_to_2011(setup, most):
-    errors, covered = [], []
+def test_worlds_recover_2009_to_2011_as_surely_as_they_say(setup, most):
+    """The mean of what the log did in its tows: how it varied is in that and the factor alike."""
+    errors, z = [], []
     for seed in range(WORLDS):
         world, found = estimated(setup, 1000 + seed)
-        truth = pl.Series(np.exp(means_of_tows(world)))
-        errors.append((found.factors["factor"] - truth).to_numpy())
-        covered.append(truth.is_between(found.factors["lo"], found.factors["hi"]).to_numpy())
-    assert np.sqrt((np.array(errors)[:, :3] ** 2).mean(axis=0)).max() < most
-    # Too few or too many have a chance of one in a thousand each if the intervals were exact.
-    low, high = binom.ppf([0.001, 0.999], np.size(covered), 0.95)
-    assert low <= np.sum(covered) <= high
-
-
-def test_a_factor_is_as_sure_as_the_mean_of_what_the_log_did_in_its_tows():
-    """How a log varies from tow to tow is in that mean and in the factor alike."""
-    z = []
-    for seed in range(WORLDS):
-        world, found = estimated(replace(CLEAN, wander=0.012), 1000 + seed)
-        ln_factor = found.factors["factor"].log().to_numpy()
-        z += ((ln_factor - means_of_tows(world)) / found.factors["ln_sd"].to_numpy()).tolist()
+        error = found.factors["factor"].to_numpy() - np.exp(means_of_tows(world))
+        errors.append(error)
+        z.append(error / (found.factors["factor"] * found.factors["ln_sd"]).to_numpy())
         assert np.linalg.eigvalsh(found.covariance).min() > 0.0
-    low, high = chi2.ppf([0.005, 0.995], len(z))
+    assert np.sqrt((np.array(errors)[:, :3] ** 2).mean(axis=0)).max() < most
+    # Too small or too large has a chance of one in a thousand each if the intervals were exact.
+    low, high = chi2.ppf([0.001, 0.999], np.size(z))
     assert low <= np.sum(np.square(z)) <= high
 
 
@@ -140,14 +112,21 @@ def test_no_fault_is_seen_in_an_ordinary_archive():
     assert found.diagnosis.filter("alarm").is_empty()
 
 
-def test_a_factor_that_repeat_tows_contradict_is_refused():
-    world, _ = estimated(CLEAN, 1000)
-    solved = faults.find_posterior(build_model(build_archive(world.tows, PRIORS), PRIORS))
-    assert not solved.is_refused.any()
-    value = solved.fit.value + 0.06 * (np.arange(len(solved.fit.value)) == 0)  # the log of 2009
-    ln_factor = solved.fit.covariate @ np.where(solved.fit.is_log, value, 0.0)
-    astray = replace(solved.fit, value=value, linear=solved.fit.model.linearize_at(ln_factor))
-    assert find_refused(astray).tolist() == [True] + 4 * [False]
+@pytest.mark.parametrize("boats", [1, 24])
+def test_a_factor_that_repeat_tows_contradict_is_refused(boats):
+    """However unsure these tows are of themselves; but one of them alone may have been altered."""
+    tows = simulate(CLEAN, 1000).tows
+    anchored = tows.filter("anchored")["fsn_no"]
+    in_2012 = tows.filter(season=2012)["fsn_no"]
+    linking = in_2012.filter(in_2012.is_in(anchored.implode()))
+    off = (pl.col("season") == 2012) & pl.col("fsn_no").is_in(linking[:boats].implode())
+    moved = tows.with_columns(
+        pl.col("ln_cw") + pl.when(off).then(0.25).otherwise(0.0),
+        pl.when(off).then(0.3).otherwise("ln_cw_sd").alias("ln_cw_sd"),
+    )
+    others = (pl.col("season") == 2012) & pl.col("fsn_no").is_in(linking[boats:].implode())
+    found = estimate_season_factors(renamed(moved, others))
+    assert [year for year in range(2009, 2014) if found.is_refused(year)] == [2012] * (boats > 1)
 
 
 def test_a_factor_over_ten_per_cent_is_not_used():
@@ -196,6 +175,13 @@ RESTLESS = {
 @pytest.mark.parametrize(("setup", "seed"), RESTLESS.values(), ids=RESTLESS)
 def test_the_search_comes_to_rest(setup, seed):
     assert "not settled" not in set(estimated(setup, seed)[1].diagnosis["verdict"])
+
+
+def test_a_fit_that_creeps_comes_to_rest():
+    """The share of altered boats and the scatter of the logs moved each other by a fortieth."""
+    found = estimate_season_factors(pl.read_parquet(CREEPING))
+    assert "not settled" not in set(found.diagnosis["verdict"])
+    assert found.diagnosis.filter("alarm").is_empty()
 
 
 @pytest.mark.parametrize(
@@ -367,8 +353,7 @@ def unexplained_in(found, season):
     return {row["instrument"]: row for row in rows}
 
 
-@pytest.mark.parametrize("others", [0, 5])
-@pytest.mark.parametrize("ratio", [0.85, 1.12, 1.25])
+@pytest.mark.parametrize(("ratio", "others"), [(0.85, 5), (1.12, 0), (1.25, 5)])
 def test_one_repeat_boat_does_not_tell_a_load_cell_from_an_altered_boat(ratio, others):
     """A force 12 to 25 % off in the only repeat tow printed the old Cw again, without a word."""
     tows, (boat,) = with_few_repeats(1, 2018, 1, others=others)
@@ -422,8 +407,7 @@ def test_a_load_cell_takes_two_boats_and_three_where_they_disagree(ratios, verdi
     assert shown_by == ({", ".join(odd)} if verdict == "cannot be told" else set())
 
 
-@pytest.mark.parametrize("ratio", [0.85, 1.0, 1.25])
-@pytest.mark.parametrize("seed", [9, 12])
+@pytest.mark.parametrize(("seed", "ratio"), [(9, 0.85), (12, 1.0), (12, 1.25)])
 def test_the_search_settles_where_one_boat_alone_was_towed_twice(seed, ratio):
     """Its variance between tows went to and fro between two values for ever."""
     tows, (boat,) = with_few_repeats(seed, 2018, 1, HARD)

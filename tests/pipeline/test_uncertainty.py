@@ -69,7 +69,7 @@ def test_the_budget_of_a_usual_tow():
     }  # fmt: skip
     found = {name: 100 * u_of(held, name) for name in printed}
     assert found == pytest.approx(printed, abs=0.006)
-    assert 100 * combine(held)["u_ratio"][0] == pytest.approx(1.6, abs=0.06)
+    assert 100 * combine(tows(), Assumed())["u_ratio"][0] == pytest.approx(1.6, abs=0.06)
 
 
 def test_keys_say_what_tows_have_in_common():
@@ -84,13 +84,12 @@ def test_keys_say_what_tows_have_in_common():
 
 
 def test_interval_takes_few_degrees_of_freedom_into_account():
-    held = budget(tows(random_ratio=0.05, random_dof=4.0))
-    total = combine(held).row(0, named=True)
+    total = combine(tows(random_ratio=0.05, random_dof=4.0), Assumed()).row(0, named=True)
     assert 4.0 < total["dof"] < 5.5
     quantile = np.log(total["hi_ratio"]) / total["u_ratio"]
     assert quantile == pytest.approx(stats.t.ppf(0.975, total["dof"]))
     assert total["lo_ratio"] == pytest.approx(1 / total["hi_ratio"])
-    many = combine(budget(tows(random_dof=np.inf))).row(0, named=True)
+    many = combine(tows(random_dof=np.inf), Assumed()).row(0, named=True)
     assert np.log(many["hi_ratio"]) / many["u_ratio"] == pytest.approx(1.95996, abs=1e-4)
 
 
