@@ -14,7 +14,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test test-more slow texts lint wheel docs pictures bench growth accuracy survive clean
+.PHONY: help env demo test test-more slow texts lint wheel docs pictures bench growth accuracy clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
@@ -29,7 +29,6 @@ help:
 	@echo "make bench  measure speed and memory"
 	@echo "make growth measure them from one to three thousand tows"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
-	@echo "make survive  kill $(KILLS) rebuilds and publications at random moments and look what is lost"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
 
@@ -83,8 +82,11 @@ $(DEMO)/archief: | $(READY)
 test test-more slow: export POLARS_MAX_THREADS = 1
 test test-more slow: export OPENBLAS_NUM_THREADS = 1
 
+# By their marks. CI runs TESTS="not slow", so that what tests share is made once.
+TESTS ?= not more and not slow
+
 test: $(DEVELOP)
-	@$(BIN)/python -m pytest -n 3 --dist worksteal
+	@$(BIN)/python -m pytest -n 3 --dist worksteal -m "$(TESTS)"
 
 test-more: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 3 --dist worksteal -m "more and not slow"
@@ -134,12 +136,6 @@ PROCESSES ?= 2
 
 accuracy: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.worlds --seeds $(SEEDS) --processes $(PROCESSES)
-
-# This is long. Shorter: make survive KILLS=4
-KILLS ?= 40
-
-survive: $(DEVELOP)
-	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/survive.py $(KILLS)
 
 clean:
 	rm -rf .venv $(DEMO) dist docs/_build .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -144,7 +144,7 @@ def rebuild_failed(settings: Settings, data: Path, is_served: bool) -> dg.Sensor
 
 
 def _explain_step(event: dg.DagsterEvent) -> str:
-    """Return what a failed step says: the error behind Dagster's own."""
+    """Return the error behind the one that Dagster raises for a failed step."""
     failure = event.step_failure_data
     if failure.user_failure_data is not None:
         return failure.user_failure_data.description or ""

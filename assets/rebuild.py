@@ -12,6 +12,7 @@ from typing import Final
 from assets.report import Done, Report, confirm_report, failed_checks, read_report, record_failure
 from assets.settings import FILE_NAME
 from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
+from warehouse.archive import list_archive_files
 from warehouse.intake.lake import ArchiveChangedError
 from warehouse.intake.seasons import listing
 from warehouse.store.code import code_hash
@@ -59,6 +60,7 @@ def rebuild(
         if _is_unchanged(store, archive, asked):
             return confirm_report(store, dt.datetime.now().astimezone())
         try:
+            list_archive_files(archive)  # refuses what is no archive, before Dagster is imported
             with explain_machine_faults(data):
                 done = _run_until_sound(archive, data, methods, sorted(seasons or ()), selection)
         except NoTowsYetError:

@@ -38,13 +38,13 @@ def read_methods(folders: Folders, table: pl.DataFrame) -> list[Method]:
 def methods(applied_methods: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
     """Return the methods that made the tables, in order: those of which no code of ours failed."""
     computed = applied_methods.join(curves, on="method", how="semi", maintain_order="left")
-    return computed.select("method", *FACTS)
+    return computed.select("method", pl.col(FACTS))
 
 
 @dg.asset
 @incremental()
 def decisions(folders: Folders) -> pl.DataFrame:
-    """Return what people decided about tows, in `besluiten.toml`."""
+    """Return the decisions of people about tows, in `besluiten.toml`."""
     return tabulate_decisions(read_decisions(folders.store.root / FILE_NAME))
 
 

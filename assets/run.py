@@ -58,7 +58,7 @@ def run_job(
 
 
 def list_made(result: dg.ExecuteInProcessResult, methods: Sequence[str]) -> Done:
-    """Return what a run made anew; what it only confirmed is left out."""
+    """Return which assets a run made anew, without those that it only confirmed."""
     done = Done()
     for event in result.get_asset_materialization_events():
         made = event.materialization

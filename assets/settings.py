@@ -70,7 +70,7 @@ class Settings(BaseModel):
 
 
 def applied(data: Path, asked: Sequence[str] = ()) -> list[str]:
-    """Names of the methods that a rebuild applies when these are asked for."""
+    """Return the names of the methods that a rebuild applies when these are asked for."""
     return methods_to_apply(Store(data), read_settings(data).methods, asked)
 
 

@@ -57,7 +57,7 @@ def map_in_parallel(
     scheduler: str | None = None,
     on_progress: Callable[[int], object] = lambda _: None,
 ) -> list[R]:
-    """Return what `work` makes of each task, in their order.
+    """Return the results of `work` on each task, in their order.
 
     Helpers begin at the first task; without a cluster, this process begins at the last.
 

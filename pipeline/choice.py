@@ -16,7 +16,7 @@ SAME_SHARE: Final = 1e-9
 
 
 def first_largest(values: FloatArray) -> IntArray:
-    """Index along axis 0 of the first of the largest values."""
+    """Return the index along axis 0 of the first of the largest values."""
     top = values.max(axis=0)
     enough = np.where(top > 0.0, top * (1.0 - SAME_SHARE), top * (1.0 + SAME_SHARE))
     return np.asarray((values >= enough).argmax(axis=0))

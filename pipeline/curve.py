@@ -80,7 +80,7 @@ class Points:
     def from_arrays(
         cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None
     ) -> Self:
-        """Points from anything array-like; one curve may be one row; by default all are used."""
+        """Make points of anything array-like; one curve may be one row; by default all are used."""
         speed = np.atleast_2d(np.asarray(speed_m_s, dtype=np.float64))
         cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))
         mask = np.ones(speed.shape, bool) if used is None else np.atleast_2d(np.asarray(used, bool))
@@ -121,7 +121,7 @@ class Curves:
         return _b_of_s(np.where(self.b_determined, self.s_s2_m2, 0.0))
 
     def cw_at(self, speed_m_s: ArrayLike) -> FloatArray:
-        """Cw [kg/m] of every curve at its own speed, shape (n_fits,); infinite from B on."""
+        """Return Cw [kg/m] of every curve at its own speed, shape (n_fits,); infinite from B on."""
         return cw(self.a_kg_m, self.s_s2_m2, speed_m_s)
 
 
@@ -158,8 +158,10 @@ class Interval(NamedTuple):
 
 
 def cw(a_kg_m: ArrayLike, s_s2_m2: ArrayLike, speed_m_s: ArrayLike) -> FloatArray:
-    """Cw [kg/m] on the hyperbola A / (1 - s v^2); arguments broadcast; infinite from B on."""
-    a, s, v = (np.asarray(x, dtype=np.float64) for x in (a_kg_m, s_s2_m2, speed_m_s))
+    """Return Cw [kg/m] on the hyperbola A / (1 - s v^2), broadcast; infinite from B on."""
+    a = np.asarray(a_kg_m, dtype=np.float64)
+    s = np.asarray(s_s2_m2, dtype=np.float64)
+    v = np.asarray(speed_m_s, dtype=np.float64)
     denominator = 1.0 - s * v * v
     valid = denominator > 0
     return np.where(valid, a / np.where(valid, denominator, 1.0), np.inf)
@@ -172,14 +174,14 @@ def s_of_b(b_m_s: ArrayLike) -> FloatArray:
 
 
 def s_of_height(a_kg_m: FloatArray, cw_kg_m: FloatArray, speed_m_s: FloatArray) -> FloatArray:
-    """S = 1/B^2 [s2/m2] of the curve with that A and that Cw at a speed; 0 or less without a B."""
+    """Return s = 1/B^2 [s2/m2] by A and by Cw at a speed; 0 or less where there is no B."""
     return (1.0 - a_kg_m / cw_kg_m) / speed_m_s**2
 
 
 def to_c0_q(
     a_kg_m: ArrayLike, s_s2_m2: ArrayLike, reference_speed_m_s: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """C0 = Cw(v0) [kg/m] and q = r / (1 - r), r = s v0^2; both infinite if v0 is not below B."""
+    """Return C0 = Cw(v0) [kg/m] and q = r / (1 - r), r = s v0^2; infinite where v0 >= B."""
     s, v0 = np.asarray(s_s2_m2, dtype=np.float64), np.asarray(reference_speed_m_s, dtype=np.float64)
     # (1 - s v^2) = 1 / (1 + q), so q + 1 is the hyperbola with A = 1.
     return cw(a_kg_m, s, v0), cw(1.0, s, v0) - 1.0
@@ -202,7 +204,9 @@ def rebase(
     A pure scale error of the log maps hyperbolas onto hyperbolas: A / y^2 and B y, with A B^2
     unchanged. Exact as long as no wind correction depends on the speed. An infinite B stays so.
     """
-    a, b, y = (np.asarray(x, dtype=np.float64) for x in (a_kg_m, b_m_s, log_factor))
+    a = np.asarray(a_kg_m, dtype=np.float64)
+    b = np.asarray(b_m_s, dtype=np.float64)
+    y = np.asarray(log_factor, dtype=np.float64)
     return a / (y * y), b * y
 
 
@@ -490,7 +494,7 @@ def _sum(x: FloatArray) -> FloatArray:
 
 
 def own_scatter(curves: Curves) -> Scatter:
-    """Scatter of a curve's own points about it, with n - 2 degrees of freedom."""
+    """Return the scatter of a curve's own points about it, with n - 2 degrees of freedom."""
     dof = np.maximum(curves.n_points - 2, 0).astype(np.float64)
     variance = np.where(dof > 0, curves.rss_kg2_m2 / np.maximum(dof, 1.0), 0.0)
     return Scatter(variance, dof)
@@ -499,7 +503,7 @@ def own_scatter(curves: Curves) -> Scatter:
 def covariance(
     points: Points, curves: Curves, scatter: Scatter, speed_m_s: ArrayLike
 ) -> Covariance:
-    """Covariance of (C0, q) that follows from the scatter of the points: variance (J'J)^-1.
+    """Return the covariance of (C0, q) by the scatter of the points: variance (J'J)^-1.
 
     B counts as free; for a capped curve the result is therefore too wide rather than too narrow.
 
@@ -532,7 +536,7 @@ def covariance(
 
 
 def cw_interval(points: Points, curves: Curves, scatter: Scatter, speed_m_s: ArrayLike) -> Interval:
-    """95 % interval of Cw [kg/m] at one speed per curve, by the scatter of the points alone.
+    """Return the 95 % interval of Cw [kg/m] at a speed per curve, by the scatter of its points.
 
     Taken on the logarithm, since errors of speed and force act as factors; so it is positive. It
     runs from 0 to infinity where the scatter is not known or the speed is not below B.
@@ -547,7 +551,7 @@ def cw_interval(points: Points, curves: Curves, scatter: Scatter, speed_m_s: Arr
 
 
 def b_interval(points: Points, curves: Curves, scatter: Scatter) -> Interval:
-    """95 % interval of B [m/s] by profile likelihood: every B whose fit is not significantly worse.
+    """Return the 95 % interval of B [m/s] by profile likelihood.
 
     The set {s: RSS(s) - RSS_min <= t^2 variance}, the standard answer where a parameter may not be
     identifiable (Raue et al. 2009). The upper bound is infinite ("none") where a flat curve is
@@ -580,7 +584,7 @@ def _b_of_s(s: FloatArray) -> FloatArray:
 
 
 def _t_quantile(dof: ArrayLike) -> FloatArray:
-    """Two-sided t-quantile; 0 degrees of freedom give that of 1: callers treat them apart."""
+    """Return the two-sided t-quantile; for 0 degrees of freedom that for 1."""
     return t_quantile(np.maximum(dof, 1.0))
 
 

@@ -54,6 +54,6 @@ class UnavailableError(HerijkError):
 
 
 def unexpected(error: BaseException) -> str:
-    """One sentence for an error that nobody foresaw."""
+    """Return one sentence for an error that nobody foresaw."""
     what = " ".join(str(error).split())[:300]
     return say("an unexpected error: {}: {}", type(error).__name__, what)

@@ -25,17 +25,17 @@ may lack the height; there it moves the interval and not Cw."""
 
 
 def hull_speed_m_s(waterline_length_m: FloatArray) -> FloatArray:
-    """Speed [m/s] whose wave is as long as the waterline: 1.25 sqrt(L)."""
+    """Return the speed [m/s] whose wave is as long as the waterline: 1.25 sqrt(L)."""
     return 1.25 * np.sqrt(waterline_length_m)
 
 
 def front_area_m2(beam_m: FloatArray, bow_height_m: FloatArray) -> FloatArray:
-    """Area [m2] seen by a head wind: b h + 0.5."""
+    """Return the area [m2] seen by a head wind: b h + 0.5."""
     return beam_m * _known_height_m(bow_height_m) + CREW_FRONT_AREA_M2
 
 
 def side_area_m2(length_m: FloatArray, bow_height_m: FloatArray) -> FloatArray:
-    """Area [m2] seen by a beam wind: l h + 1.0."""
+    """Return the area [m2] seen by a beam wind: l h + 1.0."""
     return length_m * _known_height_m(bow_height_m) + CREW_SIDE_AREA_M2
 
 
@@ -46,5 +46,5 @@ def _known_height_m(bow_height_m: FloatArray) -> FloatArray:
 def still_air_coefficient_kg_m(
     area_m2: FloatArray, drag_coefficient: FloatArray | float
 ) -> FloatArray:
-    """Part of Cw [kg/m] due to still air: rho/2 area Cvt; force over speed squared, so constant."""
+    """Return the part of Cw [kg/m] due to still air: rho/2 area Cvt, the same at any speed."""
     return 0.5 * AIR_DENSITY_KG_M3 * area_m2 * drag_coefficient

@@ -13,7 +13,7 @@ from gettext import NullTranslations, translation
 from numbers import Real
 from string import Formatter
 from types import MappingProxyType
-from typing import Any, Final, Protocol
+from typing import Any, Final, Protocol, Self
 
 LANGUAGES: Final = ("nl", "en")
 DECIMALS: Final = {"nl": ",", "en": "."}
@@ -59,14 +59,18 @@ class _WithComma:
 
 
 class Sentence(str):
-    """A text in English that knows its template and what is filled in.
+    """A text in English that can be given in another language.
+
+    It is a `str`, so messages and tables take it as it is. Beside its English it keeps what it was
+    made from: a template, and the values that are filled in.
 
     Attributes:
-        template: the English text with braces.
-        in_order: what is in the place of braces without a name.
-        values: what is in the place of names; may be sentences themselves.
-        context: tells it from an equal English text that is another in Dutch.
-        plural, number: the template for more than one, and how many there are.
+        template: the English text, with braces for the values.
+        in_order: values of braces without a name.
+        values: values of braces with a name; may be sentences themselves.
+        context: tells two equal English texts apart whose Dutch differs.
+        plural: the template for any number but 1; empty if there is one template only.
+        number: chooses between `template` and `plural`.
     """
 
     __slots__ = ("context", "in_order", "number", "plural", "template", "values")
@@ -78,17 +82,38 @@ class Sentence(str):
     plural: str
     number: int
 
+    def __new__(
+        cls,
+        template: str,
+        in_order: tuple[object, ...] = (),
+        values: Mapping[str, object] = MappingProxyType({}),
+        context: str = "",
+        plural: str = "",
+        number: int = 1,
+    ) -> Self:
+        """Fill the values in, in English."""
+        english = plural if plural and number != 1 else template
+        sentence = super().__new__(cls, _fill_in(english, "en", in_order, values))
+        sentence.template = str(template)
+        sentence.in_order = in_order
+        sentence.values = values
+        sentence.context = context
+        sentence.plural = plural
+        sentence.number = number
+        return sentence
+
     def spoken(self, language: str) -> str:
         """Return the sentence in `en` or `nl`; in English where there is no Dutch."""
         if language == "en":
             return str(self)
-        known = self.template, self.context, self.plural, self.number
-        return _fill_in(_look_up(language, *known), language, self.in_order, self.values)
+        text = _look_up(language, self.template, self.context, self.plural, self.number)
+        return _fill_in(text, language, self.in_order, self.values)
 
 
 def _look_up(
     language: str, template: str, context: str = "", plural: str = "", number: int = 1
 ) -> str:
+    """Return the text for a template in the catalogue of a language."""
     catalogue = _catalogue(language)
     if plural:
         return catalogue.ngettext(template, plural, number)
@@ -100,6 +125,7 @@ def _look_up(
 def _fill_in(
     text: str, language: str, in_order: tuple[object, ...], values: Mapping[str, object]
 ) -> str:
+    """Return a text with its values filled in, as a language writes them."""
     if not in_order and not values:
         return text
     shown = [_translate_value(value, language) for value in in_order]
@@ -108,25 +134,10 @@ def _fill_in(
 
 
 def _translate_value(value: object, language: str) -> object:
-    """Return what is filled in for a value, a number with the decimal mark of the language."""
+    """Return a value in a language: text translated, a number with its decimal mark."""
     if isinstance(value, str | Exception):
         return spoken(value, language)
     return _WithComma(value) if DECIMALS[language] == "," and isinstance(value, Real) else value
-
-
-def _sentence(
-    template: str,
-    in_order: tuple[object, ...] = (),
-    values: Mapping[str, object] = MappingProxyType({}),
-    context: str = "",
-    plural: str = "",
-    number: int = 1,
-) -> Sentence:
-    text = plural if plural and number != 1 else template
-    sentence = Sentence(_fill_in(text, "en", in_order, values))
-    sentence.template, sentence.in_order, sentence.values = str(template), in_order, values
-    sentence.context, sentence.plural, sentence.number = context, plural, number
-    return sentence
 
 
 def say(template: str, *in_order: object, **named: object) -> Sentence:
@@ -136,7 +147,7 @@ def say(template: str, *in_order: object, **named: object) -> Sentence:
     """
     shown = tuple(_printable(value) for value in in_order)
     by_name = {name: _printable(value) for name, value in named.items()}
-    return _sentence(template, shown, by_name, getattr(template, "context", ""))
+    return Sentence(template, shown, by_name, context=getattr(template, "context", ""))
 
 
 def headings(*texts: str) -> tuple[Sentence, ...]:
@@ -146,12 +157,12 @@ def headings(*texts: str) -> tuple[Sentence, ...]:
 
 def pgettext(context: str, template: str) -> Sentence:
     """Return a text whose English has another Dutch elsewhere; the context tells them apart."""
-    return _sentence(template, context=context)
+    return Sentence(template, context=context)
 
 
 def ngettext(one: str, many: str, number: int) -> Sentence:
     """Return a text about one or about several; `{n}` is how many."""
-    return _sentence(one, values={"n": number}, plural=many, number=number)
+    return Sentence(one, values={"n": number}, plural=many, number=number)
 
 
 def speaker(language: str) -> Say:
@@ -184,7 +195,7 @@ def format_probability(probability: float) -> str:
 
 
 def _printable(value: object) -> object:
-    """Text or an error as one line without control characters; other values as they are."""
+    """Return texts and errors as one line without control characters, other values as they are."""
     if isinstance(value, Exception) and value.args and isinstance(value.args[0], Sentence):
         return value.args[0]
     if isinstance(value, Sentence) or not isinstance(value, str | Exception):
@@ -201,14 +212,14 @@ def spoken(text: Any, language: str) -> Any:
 
 
 def innermost(text: str) -> str:
-    """Return what a sentence says of its line: the sentence within `Line 3: ...`."""
+    """Return the sentence about a line: the one within `Line 3: ...`."""
     while isinstance(text, Sentence) and isinstance(text.values.get("what"), Sentence):
         text = text.values["what"]
     return text
 
 
 def find_cause(text: str) -> str:
-    """Return what sentences of one cause share: the same words about the same column.
+    """Return the part that sentences of one cause share: the same words about the same column.
 
     What differs from fault to fault is left open: `column 'klasse' is '…'; H or D is expected.`
     """

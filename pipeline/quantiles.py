@@ -22,7 +22,7 @@ MAD_TO_SD: Final = 1.4826
 
 
 def t_quantile(dof: ArrayLike) -> FloatArray:
-    """Two-sided quantile of Student's t: an interval of `LEVEL` is +- so many deviations.
+    """Return the two-sided quantile of Student's t at `LEVEL`: half an interval in deviations.
 
     Args:
         dof: degrees of freedom, of any shape, positive.

@@ -74,7 +74,7 @@ class Curve:
         return float(self.s_s2_m2**-0.5) if self.s_s2_m2 > 0 else None
 
     def cw_kg_m(self, speed_m_s: ArrayLike) -> FloatArray:
-        """Cw at speeds of any shape; infinite from B on.
+        """Return Cw [kg/m] at speeds [m/s] of any shape; infinite from B on.
 
         Raises:
             HerijkError: a speed is negative or not a number.
@@ -82,7 +82,7 @@ class Curve:
         return hyperbola.cw(self.a_kg_m, self.s_s2_m2, _none_below_zero(speed_m_s))
 
     def power_w(self, speed_m_s: ArrayLike) -> FloatArray:
-        """Power through the water, P = Cw v^3, of the whole crew.
+        """Return the power through the water of the whole crew [W]: P = Cw v^3.
 
         >>> Curve.from_a_b(20.0, None).power_w(3.0)
         array(540.)
@@ -100,7 +100,8 @@ class Curve:
         np.float64(3.0)
         """
         power = _none_below_zero(power_w)
-        a, s = (np.broadcast_to(x, power.shape) for x in (self.a_kg_m, self.s_s2_m2))
+        a = np.broadcast_to(self.a_kg_m, power.shape)
+        s = np.broadcast_to(self.s_s2_m2, power.shape)
         return speed_at_power(a, s, power)
 
 
@@ -135,7 +136,7 @@ class Fit:
         return None not in self.b
 
     def cw(self, speed_m_s: float) -> Estimate:
-        """Cw [kg/m] at a speed with its 95 % interval, from the scatter of the points alone.
+        """Return Cw [kg/m] at a speed with its 95 % interval, by the scatter of the points alone.
 
         Raises:
             HerijkError: the speed is negative or not a number.
@@ -206,7 +207,7 @@ def _warn_of_misfit(curve: Curve, points: hyperbola.Points) -> None:
 
 
 def _none_below_zero(numbers: ArrayLike) -> FloatArray:
-    """Speeds or powers as an array."""
+    """Return speeds or powers as an array; refuse negative ones."""
     array = np.asarray(numbers, dtype=np.float64)
     if not (array >= 0.0).all():
         raise HerijkError("every speed and every power must be a number, 0 or more")

@@ -19,7 +19,7 @@ class DataFolder:
         self.tables  # noqa: B018 - says at once when there is no database
 
     def __repr__(self) -> str:
-        """Which folder it is."""
+        """Name the folder."""
         return f"DataFolder({str(self._store.root)!r})"
 
     @property
@@ -32,7 +32,7 @@ UNION ALL SELECT view_name, comment FROM duckdb_views() WHERE NOT internal ORDER
         return dict(self.sql(query).rows())
 
     def table(self, name: str) -> pl.DataFrame:
-        """One table, whole.
+        """Return one table, whole.
 
         Raises:
             MissingKnowledgeError: there is no such table.
@@ -86,7 +86,7 @@ def open_data(folder: str | Path) -> DataFolder:
 
 
 def compare_registers(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """Return what changes from one register to another, per boat and crew.
+    """Compare two registers, per boat and crew.
 
     Args:
         old, new: rows of `DataFolder.register`, each of one edition.

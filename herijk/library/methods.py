@@ -46,7 +46,7 @@ class Applied:
 
 
 def methods() -> tuple[str, ...]:
-    """Names of the methods that ship with Herijk.
+    """Return the names of the methods that ship with Herijk.
 
     >>> "rebased" in methods()
     True

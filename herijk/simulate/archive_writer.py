@@ -99,7 +99,7 @@ def find_spelling(season: int) -> Spelling:
 
 
 def truth_path(directory: Path) -> Path:
-    """Where the truth of an archive lies: beside it, never in it."""
+    """Return where the truth of an archive lies: beside it, never in it."""
     return directory.with_name(f"{directory.name}-truth.json")
 
 
@@ -408,7 +408,7 @@ def _race_rows(world: World, season: int) -> list[Row]:
 
 
 def _truth_record(world: World, tow: Tow, runs: tuple[RunTruth, ...]) -> dict[str, object]:
-    """Return what the archive does not tell about a tow, ready for JSON."""
+    """Return the truth about a tow, which the archive does not tell, ready for JSON."""
     truth = tow.truth
     defects = world.settings.defects(tow.season)
     speeds = tow.declared_speed_m_s * CURVE_SPEED_RATIOS

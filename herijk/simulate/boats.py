@@ -101,13 +101,13 @@ class Boat:
         return f"{(1_308_179 * (self.index + 1)) % 9_999_991:07d}"
 
     def target_power_w(self, crew_class: str) -> float:
-        """Power per rower at which this boat is towed."""
+        """Return the power per rower [W] at which this boat is towed."""
         low, high = POWER_W[crew_class]
         return low + self.power_share * (high - low)
 
 
 def draw_boat(index: int, rng: np.random.Generator, shape: Shape, spread: float) -> Boat:
-    """Draws boat number `index` from the table of types.
+    """Draw boat number `index` from the table of types.
 
     Args:
         index: number of the boat.
@@ -142,7 +142,7 @@ def draw_boat(index: int, rng: np.random.Generator, shape: Shape, spread: float)
 
 
 def crew_kg(crew_class: str, rowers: int) -> float:
-    """Weight of a crew."""
+    """Return the weight of a crew [kg]."""
     return rowers * ROWER_KG[crew_class]
 
 
@@ -179,7 +179,7 @@ def load_hull(boat: Boat, on_board_kg: float, weight_kg: float, condition: float
 def speed_at_power_m_s(
     hull: Hull, power_w: float, rowers: int, temperature_c: float, air: AirCoefficients
 ) -> float:
-    """Speed at which each rower delivers `power_w`: solves `Cw(v) v^3 / n = P`."""
+    """Return the speed at which each rower delivers `power_w`: solves `Cw(v) v^3 / n = P`."""
 
     def surplus_w(speed_m_s: float) -> float:
         cw = float(true_cw_kg_m(hull, np.array(speed_m_s), temperature_c, air))

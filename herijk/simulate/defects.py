@@ -91,7 +91,7 @@ class Defects:
 
     @classmethod
     def history(cls, season: int) -> "Defects":
-        """As the instruments and habits of that season had it.
+        """Return the defects that instruments and habits of a season had.
 
         Raises:
             MissingKnowledgeError: the season is before the first of `SEASONS`.

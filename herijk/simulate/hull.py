@@ -74,26 +74,26 @@ class Hull:
 
 
 def water_density_kg_m3(temperature_c: float) -> float:
-    """Density of fresh water (Tilton & Taylor 1937), valid 0-20 C."""
+    """Return the density [kg/m3] of fresh water (Tilton & Taylor 1937), valid 0-20 C."""
     t = temperature_c
     return 999.972 * (1.0 - (t + 288.9414) / (508929.2 * (t + 68.12963)) * (t - 3.9863) ** 2)
 
 
 def kinematic_viscosity_m2_s(temperature_c: float) -> float:
-    """Kinematic viscosity of fresh water (Kestin, Sokolov & Wakeham 1978), valid 0-40 C."""
+    """Return the kinematic viscosity [m2/s] of fresh water (Kestin et al. 1978), 0-40 C."""
     d = 20.0 - temperature_c
     log10_ratio = d / (temperature_c + 96.0) * (1.2364 - 1.37e-3 * d + 5.7e-6 * d**2)
     return float(1.002e-3 * 10.0**log10_ratio / water_density_kg_m3(temperature_c))
 
 
 def friction_coefficient(speed_m_s: Floats, length_m: float, temperature_c: float) -> Floats:
-    """ITTC-57 line, `CF = 0.075 / (log10 Re - 2)^2`."""
+    """Return CF by the ITTC-57 line, `CF = 0.075 / (log10 Re - 2)^2`."""
     reynolds = speed_m_s * (length_m / kinematic_viscosity_m2_s(temperature_c))
     return np.asarray(0.075 / (np.log10(reynolds) - 2.0) ** 2)
 
 
 def water_cw_kg_m(hull: Hull, speed_m_s: Floats, temperature_c: float) -> Floats:
-    """Water resistance over speed squared [kg/m]; any shape, speeds above zero."""
+    """Return the water resistance over speed squared [kg/m]; any shape, speeds above zero."""
     density = water_density_kg_m3(temperature_c)
     cf = friction_coefficient(speed_m_s, hull.waterline_length_m, temperature_c)
     friction = density / 2 * hull.wetted_surface_m2 * (1.0 + hull.form_factor) * cf
@@ -124,12 +124,12 @@ def _residuary_cw_kg_m(
 
 @cache
 def _ln_residuary(per_1000: tuple[float, ...]) -> scipy.interpolate.CubicSpline:
-    """Logarithm of residuary resistance / weight over Froude number."""
+    """Return the logarithm of residuary resistance / weight by Froude number."""
     return scipy.interpolate.CubicSpline(FROUDE, np.log(np.array(per_1000) / 1000.0))
 
 
 def still_air_cw_kg_m(hull: Hull, air: AirCoefficients) -> float:
-    """Air resistance of the boat's own speed over speed squared [kg/m]."""
+    """Return the air resistance of the boat's own speed over speed squared [kg/m]."""
     return AIR_DENSITY_KG_M3 / 2 * hull.front_m2 * air.head
 
 
@@ -143,7 +143,7 @@ def true_cw_kg_m(
 def air_force_n(
     hull: Hull, wind_ahead_m_s: Floats, wind_abeam_m_s: Floats, air: AirCoefficients
 ) -> Floats:
-    """Air force against the boat by the oblique formula of 2015 (Pot 2015).
+    """Return the air force against the boat by the oblique formula of 2015 (Pot 2015).
 
     `F = rho/2 (front |cos a| Cvt + side |sin a| Cvd) (w cos a)^2 sign(cos a)`, written with the
     components `w cos a` and `w sin a`.

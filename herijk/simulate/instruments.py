@@ -43,7 +43,7 @@ Samples = NDArray[np.float32]
 def read_logs(
     time_s: Floats, run: TrueRun, tow: Tow, defects: Defects, streams: TowStreams
 ) -> tuple[Samples, Samples]:
-    """Both logs. They wear alike: log 2 shares the factor of log 1, times its own ratio."""
+    """Simulate both logs; log 2 shares the factor of log 1, times its own ratio."""
     step_s = RUN_SECONDS / time_s.size
     speed_m_s = np.interp(time_s, run.grid_s, run.speed_m_s)
     readings = []
@@ -63,7 +63,7 @@ def read_logs(
 
 
 def read_gps(time_s: Floats, run: TrueRun, defects: Defects, streams: TowStreams) -> Samples:
-    """Speed over ground, late, and held between two fixes."""
+    """Simulate speed over ground, late, and held between two fixes."""
     rng = streams[Component.GPS]
     wander = smooth_wander(rng, run.grid_s.size, 1.0 / SLOW_HZ, GPS_WANDER_S)
     speed = run.ground_speed_m_s + defects.gps_wander_m_s * wander
@@ -84,7 +84,7 @@ def read_load_cell(
     air: AirCoefficients,
     streams: TowStreams,
 ) -> Samples:
-    """Return what the load cell feels: water, air, inertia, and the unrest of tow line and helm."""
+    """Simulate the force on the load cell: water, air, inertia, unrest of tow line and helm."""
     count, step_s = time_s.size, RUN_SECONDS / time_s.size
 
     def interpolate_to_samples(slow: Floats) -> Floats:
@@ -115,7 +115,7 @@ def read_load_cell(
 
 
 def _surge(time_s: Floats, grid_s: Floats, rng: np.random.Generator) -> Floats:
-    """Unit-variance swing of the tow line about `SURGE_HZ`, slowly losing its phase."""
+    """Simulate the swing of the tow line about `SURGE_HZ`, of unit variance and drifting phase."""
     cosine, sine = (
         np.interp(
             time_s, grid_s, coloured_noise(rng, grid_s.size, 1.0 / SLOW_HZ, SURGE_COHERENCE_S)
@@ -129,7 +129,7 @@ def _surge(time_s: Floats, grid_s: Floats, rng: np.random.Generator) -> Floats:
 def read_anemometer(
     time_s: Floats, run: TrueRun, defects: Defects, streams: TowStreams
 ) -> tuple[Samples, Samples]:
-    """Apparent wind speed, and its angle in [0, 360) with the vane's own swinging."""
+    """Simulate apparent wind speed and its angle in [0, 360), with the swinging of the vane."""
     ahead = np.interp(time_s, run.grid_s, run.wind_ahead_m_s)
     abeam = np.interp(time_s, run.grid_s, run.wind_abeam_m_s)
     jitter = coloured_noise(streams[Component.VANE], run.grid_s.size, 1.0 / SLOW_HZ, VANE_S)

@@ -135,7 +135,7 @@ def simulate_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueR
 
 
 def _tide(defects: Defects, rng: np.random.Generator) -> Callable[[Floats], Floats]:
-    """Stream of the tide by seconds from the middle of the tow; it turns there, near enough."""
+    """Return the stream of the tide by seconds from the middle of the tow, where it turns."""
     slack_s, sign = rng.uniform(-SLACK_WITHIN_S, SLACK_WITHIN_S), rng.choice((-1.0, 1.0))
     amplitude = defects.tide_m_s * sign
     return lambda s: np.asarray(amplitude * np.sin(2 * np.pi * (s - slack_s) / TIDE_PERIOD_S))
@@ -154,7 +154,7 @@ def _speed(
     streams: TowStreams,
     noted: list[Disturbance],
 ) -> Floats:
-    """Speed through the water: the target, missed a little, wandering, sometimes too slow at first.
+    """Simulate speed through the water: the target, missed, wandering, sometimes slow at first.
 
     A ramp is added to `noted`.
     """

@@ -59,7 +59,7 @@ def find_practice(season: int, printed_in: int) -> Practice:
 
 
 def practices(season: int) -> tuple[Practice, ...]:
-    """All by which a tow can have been printed."""
+    """Return all practices by which a tow of a season can have been printed."""
     return tuple(dict.fromkeys(find_practice(season, year) for year in (season, season + 1)))
 
 
@@ -99,7 +99,7 @@ def print_curve(
 
 
 def _is_used(run: RunTruth, tow: Tow) -> bool:
-    """Of a tow with a second file, the runs back are those of that file."""
+    """Return whether a run counts; with a second file, its runs back replace the first file's."""
     if not tow.second_name:
         return True
     out = run.run <= RUNS_PER_FILE // 2
@@ -132,7 +132,7 @@ def _run(samples: pl.DataFrame, run: RunTruth, practice: Practice) -> _Run:
 
 
 def _calibration(runs: Sequence[_Run]) -> float:
-    """GPS over log, as many runs out as back, so that the current drops out."""
+    """Return GPS over log from as many runs out as back, so that the current drops out."""
     ways = [[run for run in runs if run.direction == way] for way in (1, -1)]
     gps, log = (
         np.mean([np.mean([getattr(run, name).mean() for run in way]) for way in ways])
@@ -142,13 +142,14 @@ def _calibration(runs: Sequence[_Run]) -> float:
 
 
 def _oblique_kg_m(run: _Run, y: float, tow: Tow) -> float:
-    ahead, abeam = (run.wind_m_s * f(run.angle_rad) for f in (np.cos, np.sin))
+    ahead = run.wind_m_s * np.cos(run.angle_rad)
+    abeam = run.wind_m_s * np.sin(run.angle_rad)
     force = air_force_n(tow.hull, ahead, abeam, AIR_OF_2015)
     return float((force / (y * run.log_m_s) ** 2).mean())
 
 
 def _head_wind(runs: Sequence[_Run], y: float, tow: Tow) -> tuple[Floats, Floats, float]:
-    """Air part of each run for a coefficient of 1, from ahead and following, and still air's."""
+    """Return the air part of each run for a coefficient of 1: ahead, following and still."""
     front = AIR_DENSITY_KG_M3 / 2 * tow.hull.front_m2
     parts = []
     for run in runs:
@@ -162,8 +163,9 @@ def _head_wind(runs: Sequence[_Run], y: float, tow: Tow) -> tuple[Floats, Floats
 def _searched(
     speed: Floats, gross: Floats, ahead: Floats, following: Floats, still: float
 ) -> Floats:
-    """Cw with coefficients searched run by run between 0 and 1, so that it comes near the curve."""
-    head, behind = (np.full(speed.size, c) for c in OLD_COEFFICIENTS)
+    """Return Cw with air coefficients searched per run between 0 and 1 to fit the curve best."""
+    head = np.full(speed.size, OLD_COEFFICIENTS[0])
+    behind = np.full(speed.size, OLD_COEFFICIENTS[1])
     for _ in range(ITERATIONS):
         cw = gross - head * ahead - behind * following + still
         a_kg_m, b_m_s = _fit(speed, cw, HIGHEST_B_M_S)
@@ -174,13 +176,13 @@ def _searched(
 
 
 def _within(wanted: Floats, unit: Floats, before: Floats) -> Floats:
-    """Coefficient between 0 and 1 that takes off what is wanted; as before where no wind is."""
+    """Return the coefficient in [0, 1] that takes off what is wanted; unchanged without wind."""
     felt = unit != 0.0
     return np.where(felt, np.clip(wanted / np.where(felt, unit, 1.0), 0.0, 1.0), before)
 
 
 def _to_reference(tow: Tow, speed: Floats) -> Floats:
-    """Change of Cw to the reference temperature; the formula of 2018 is not public, so the true."""
+    """Return the true change of Cw to the reference temperature; the formula of 2018 is secret."""
     at_reference = water_cw_kg_m(tow.hull, speed, REFERENCE_TEMPERATURE_C)
     return at_reference - water_cw_kg_m(tow.hull, speed, tow.water_temperature_c)
 

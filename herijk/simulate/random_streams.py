@@ -89,7 +89,7 @@ class TowStreams:
 def coloured_noise(
     rng: np.random.Generator, count: int, step_s: float, correlation_s: float
 ) -> NDArray[np.float32]:
-    """Stationary noise of unit variance with autocorrelation exp(-t / correlation_s).
+    """Return stationary noise of unit variance with autocorrelation exp(-t / correlation_s).
 
     The same process at every sampling rate. Shape (count,).
     """
@@ -124,7 +124,7 @@ def swing(rng: np.random.Generator, time_s: Floats, frequency_hz: float, phase_s
 def smooth_wander(
     rng: np.random.Generator, count: int, step_s: float, correlation_s: float
 ) -> Floats:
-    """Stationary noise of unit variance that also has a bounded rate of change.
+    """Return stationary noise of unit variance that also has a bounded rate of change.
 
     Two first-order filters in a row, so its derivative exists (a speed needs that). Shape (count,).
     """

@@ -229,7 +229,7 @@ def simulate_world(settings: WorldSettings) -> World:
 
 
 def _schedule(settings: WorldSettings, boat: Callable[[int], Boat]) -> list[_Slot]:
-    """Who is towed when: boats that are due, longest waiting first, then new boats."""
+    """Schedule tows: boats that are due, longest waiting first, then new boats."""
     newcomers = ((index, crew) for index in count() for crew in boat(index).crew_classes)
     due: dict[tuple[int, str], int] = {}
     slots: list[_Slot] = []
@@ -248,7 +248,7 @@ def _schedule(settings: WorldSettings, boat: Callable[[int], Boat]) -> list[_Slo
 
 
 def _condition(settings: WorldSettings, boat_index: int, seasons: Sequence[int]) -> _Condition:
-    """State of a boat in the last of the `seasons` in which it was towed so far."""
+    """Return the state of a boat in the last of the `seasons` in which it was towed so far."""
     resistance, weight = 1.0, 1.0
     altered: list[int] = []
     reported: list[int] = []
@@ -339,13 +339,13 @@ def _tow(
 
 
 def _place_in_season(settings: WorldSettings, day: int) -> float:
-    """-0.5 on the first day of tows, 0.5 on the last, 0 if there is one only."""
+    """Return -0.5 on the first day of tows, 0.5 on the last, 0 if there is one only."""
     last = (settings.tows_per_season - 1) // settings.tows_a_day
     return day / last - 0.5 if last else 0.0
 
 
 def _log_change(settings: WorldSettings, season: int, day: int) -> float:
-    """Factor of fouling and of a log replaced in mid-season, on the season's log factor."""
+    """Return the factor of fouling and of a log replaced in mid-season on the season's log."""
     defects = settings.defects(season)
     replaced_at = stream(settings.seed, Subject.LOG_REPLACED, season).uniform(*REPLACED_AT)
     place = _place_in_season(settings, day)
@@ -366,12 +366,14 @@ def _slowness(defects: Defects, rng: np.random.Generator) -> float:
 def _freeboards_m(
     settings: WorldSettings, season: int, boat: Boat, weight_kg: float
 ) -> tuple[float, float, float] | None:
-    """Freeboards of the empty boat; a heavier one lies deeper."""
+    """Return freeboards of the empty boat; a heavier one lies deeper."""
     if settings.freeboards_from is None or season < settings.freeboards_from:
         return None
     waterplane_m2 = BLOCK_COEFFICIENT * boat.waterline_length_m * boat.beam_m
     deeper_m = (weight_kg - boat.boat_type.weight_kg) / (1000.0 * waterplane_m2)
-    lowest, bow, stern = (round(boat.bow_height_m * ratio - deeper_m, 3) for ratio in FREEBOARDS)
+    lowest = round(boat.bow_height_m * FREEBOARDS[0] - deeper_m, 3)
+    bow = round(boat.bow_height_m * FREEBOARDS[1] - deeper_m, 3)
+    stern = round(boat.bow_height_m * FREEBOARDS[2] - deeper_m, 3)
     return lowest, bow, stern
 
 

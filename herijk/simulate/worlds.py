@@ -43,7 +43,7 @@ class NamedWorld:
     base: Callable[[int], Defects] = Defects.clean
 
     def defects(self, season: int) -> Defects:
-        """Return what is wrong in a season."""
+        """Return the defects of a season."""
         of_season = self.base(season)
         for seasons, sizes in self.faults.items():
             if season in seasons:
@@ -52,7 +52,7 @@ class NamedWorld:
 
 
 def _warming(first: float, last: float) -> Faults:
-    """Water that warms by the season until dGPS came, its temperature not written down."""
+    """Warm the water by the season until dGPS came, without writing its temperature down."""
     middles = np.linspace(first, last, len(BEFORE_DGPS))
     return {
         range(season, season + 1): {

@@ -88,7 +88,7 @@ class RunBlocks:
         return RunBlocks(self.runs.filter(pl.Series(rows)), self.n[rows], sums)
 
     def block_means(self, name: str) -> FloatArray:
-        """Mean of each block, shape (runs, seconds); 0 after the run.
+        """Return the mean of each block, shape (runs, seconds); 0 after the run.
 
         A second without samples within the run has the mean of the nearest one before it, or of
         the first one after where there is none.
@@ -121,7 +121,7 @@ class WindowSums:
         return np.asarray(np.where(self.window, self.blocks.n, 0.0).sum(axis=1), dtype=np.float64)
 
     def mean(self, name: str) -> FloatArray:
-        """Mean over the samples, shape (runs,); 0 where the window is empty."""
+        """Return the mean over the samples, shape (runs,); 0 where the window is empty."""
         total = np.where(self.window, self.blocks[name], 0.0).sum(axis=1)
         return np.asarray(total / np.maximum(self.count, 1.0), dtype=np.float64)
 
@@ -131,7 +131,7 @@ def stack_blocks(
     runs: pl.DataFrame,
     sums_of: Callable[[str], pl.Series] | None = None,
 ) -> RunBlocks:
-    """Arranges blocks of many tows as arrays of one row per run.
+    """Arrange blocks of many tows as arrays of one row per run.
 
     Args:
         blocks: `tow_id`, and the columns that `block_sums` gives; those of `PLACE` are enough where

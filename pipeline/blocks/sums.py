@@ -114,7 +114,7 @@ def _quantities(
     wind: FloatArray,
     angle_deg: FloatArray,
 ) -> Iterator[FloatArray]:
-    """Return what is added up of every sample, in the order of `SUM_NAMES`.
+    """Return the terms of every sample that are summed, in the order of `SUM_NAMES`.
 
     The squares that air force is proportional to are signed, in m2/s2: `head` is u|u| with
     u = w cos a, the wind along the course (old rule); `front` and `side` weigh it with |cos a| and

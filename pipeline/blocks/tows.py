@@ -77,7 +77,7 @@ class Tows:
         return self.get_of_tows(column)[self.tow]
 
     def measured(self, channel: str) -> BoolArray:
-        """Tows that have a channel, `wind` or `log2`, shape (tows,)."""
+        """Return which tows have a channel, `wind` or `log2`, shape (tows,)."""
         return np.asarray(
             self.get_of_tows(f"{channel}_measured") != 0.0
         )  # also where it is not known
@@ -127,20 +127,20 @@ class Tows:
         return np.bincount(self.tow, runs, self.size).astype(np.int64)
 
     def any(self, runs: BoolArray) -> BoolArray:
-        """Whether any run of a tow is marked, shape (tows,)."""
+        """Return whether any run of each tow is marked, shape (tows,)."""
         return self.count(runs) > 0
 
     def both_ways(self, runs: BoolArray) -> BoolArray:
-        """Whether runs out and runs back of a tow are marked, shape (tows,)."""
+        """Return whether runs out and runs back of each tow are marked, shape (tows,)."""
         return self.any(runs & (self.direction == OUT)) & self.any(runs & (self.direction == BACK))
 
     def mean(self, values: FloatArray, runs: BoolArray) -> FloatArray:
-        """Mean of a run quantity over the marked runs of each tow; 0 where there are none."""
+        """Return the mean of a run quantity over the marked runs of each tow; 0 without any."""
         total = np.bincount(self.tow, np.where(runs, values, 0.0), self.size)
         return np.asarray(total / np.maximum(self.count(runs), 1), dtype=np.float64)
 
     def mean_of_ways(self, values: FloatArray, runs: BoolArray) -> FloatArray:
-        """Mean of out and back of each tow, each way weighing the same; NaN without both."""
+        """Return the mean of out and back, each way with the same weight; NaN without both."""
         ways = (self.mean(values, runs & (self.direction == way)) for way in (OUT, BACK))
         return np.where(self.both_ways(runs), 0.5 * sum(ways), np.nan)
 

@@ -141,7 +141,7 @@ class BoatModel:
         return min(self._find_sd(self._canonical[0] ** 2, self._weights.sum()), MAX_BOAT_SD)
 
     def _misfit_quantile(self, chance: float) -> float:
-        """Return what the misfit at the true spread stays under with a chance.
+        """Return the quantile of the misfit at the true spread.
 
         A weighted sum of chi-squared numbers is nearly a multiple of one (Satterthwaite 1946).
         """
@@ -152,11 +152,11 @@ class BoatModel:
         return float(weights.sum() / dof * scipy.special.chdtri(dof, 1.0 - chance))
 
     def lower_bound(self, chance: float = 0.05) -> float:
-        """Return what the true spread between boats is below with a chance."""
+        """Return the upper limit of the true spread between boats at a probability."""
         return self._find_sd(self._canonical[0] ** 2, self._misfit_quantile(1.0 - chance))
 
     def upper_bound(self, chance: float = 0.05) -> float:
-        """Return what the true spread between boats is above with a chance; may be infinite.
+        """Return the lower limit of the true spread between boats at a probability.
 
         It is at least the bound that truly equal boats give with their usual misfit: boats that
         agree by chance, or errors that are overstated, prove no more than these tows can tell

@@ -31,9 +31,9 @@ MIDDLE_RATIO: Final = (0.67, 0.80)
 resistance rises (Cw-kromme, R. Pot 2015, "Totale weerstand")."""
 
 FROM_CURVES: Final = (
-    *("declared_speed_m_s", "weight_kg", "displacement_kg", "waterline_length_m"),
-    *("a_kg_m", "b_m_s", "b_lo_m_s", "b_hi_m_s", "power_w"),
-)
+    "declared_speed_m_s", "weight_kg", "displacement_kg", "waterline_length_m",
+    "a_kg_m", "b_m_s", "b_lo_m_s", "b_hi_m_s", "power_w",
+)  # fmt: skip
 
 
 def type_tables(
@@ -80,7 +80,7 @@ def place_beside_type(observed: pl.DataFrame) -> pl.DataFrame:
         "cw_standard_hi_kg_m": cw * np.exp(cw_half),
     }
     return observed.select(
-        *TOW,
+        pl.col(TOW),
         "season",
         "newest",
         "beyond_curve",
@@ -107,7 +107,7 @@ def name_speed_cases(tow_hull_ratio: FloatArray) -> list[str]:
 def compare_with_races(
     observed: pl.DataFrame, consistency: pl.DataFrame, listed_races: pl.DataFrame
 ) -> pl.DataFrame:
-    """Return what each curve gives at the fastest speed that its crew raced until its next tow.
+    """Return Cw of each curve at the fastest speed that its crew raced until its next tow.
 
     Power by the tow's own curve is compared with that by a curve of the same height at the declared
     speed, with the mean bend of the type.
@@ -162,11 +162,11 @@ def find_fastest_races(observed: pl.DataFrame, listed_races: pl.DataFrame) -> pl
     """
     through_water = listed_races["distance_m"] - listed_races["stream_m"].fill_null(0.0)
     speed = mean_speed_m_s(through_water, listed_races["rowing_time_s"])
-    races = listed_races.select(*LINE, "race_date", raced_speed_m_s=pl.Series(speed))
+    races = listed_races.select(pl.col(LINE), "race_date", raced_speed_m_s=pl.Series(speed))
     after = pl.col("race_date") >= pl.col("tow_date")
     last = pl.col("tow_date") == pl.col("tow_date").max().over("method", *LINE, "race_date")
     return (
-        observed.select("method", "tow_id", "tow_date", *LINE)
+        observed.select("method", "tow_id", "tow_date", pl.col(LINE))
         .join(races, on=LINE, maintain_order="left")
         .filter(after)
         .filter(last)

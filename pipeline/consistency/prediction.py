@@ -66,7 +66,7 @@ def _predict_fleet(newest: pl.DataFrame) -> pl.DataFrame:
     rows = fleet.select(
         "method",
         "tow_id",
-        *LINE,
+        pl.col(LINE),
         "boat_type",
         "standard_speed_m_s",
         cw_kg_m="cw_at_standard",

@@ -31,7 +31,7 @@ ALL_PAIRS: Final = "all"
 
 
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Consecutive tows of one boat and crew without an alteration between them.
+    """Pair consecutive tows of one boat and crew without an alteration between them.
 
     The two are compared at the older tow's declared speed, where the older curve was measured, each
     with its log and load cell as the other boats show them. A boat that took part in its
@@ -77,10 +77,10 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 def _cw_at_old_speed(pairs: pl.DataFrame) -> FloatArray:
     """Return the new curve at the old declared speed, 0 where that is not below B."""
-    a, cw, v, old = (
-        pairs[name].to_numpy().astype(np.float64)
-        for name in ("a_kg_m", "cw_kg_m", "declared_speed_m_s", "declared_speed_m_s_before")
-    )
+    a = pairs["a_kg_m"].to_numpy().astype(np.float64)
+    cw = pairs["cw_kg_m"].to_numpy().astype(np.float64)
+    v = pairs["declared_speed_m_s"].to_numpy().astype(np.float64)
+    old = pairs["declared_speed_m_s_before"].to_numpy().astype(np.float64)
     left = 1.0 - s_of_height(a, cw, v) * old**2
     return np.where(left > 0, a / np.where(left > 0, left, 1.0), 0.0)
 
@@ -123,7 +123,8 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.Da
     found = observed.select("method").unique(maintain_order=True).join(scopes, how="cross")
     for part in (pairs, tows):
         found = found.join(part, on=key, how="left", maintain_order="left")
-    n_pairs, chained = (found[name].cast(pl.Float64).to_numpy() for name in ("n_pairs", "chained"))
+    n_pairs = found["n_pairs"].cast(pl.Float64).to_numpy()
+    chained = found["chained"].cast(pl.Float64).to_numpy()
     dof = n_pairs / (1.0 + chained / (2.0 * n_pairs))
     ends = {"lo": 0.5 - LEVEL / 2, "hi": 0.5 + LEVEL / 2}
     wider = {
@@ -140,7 +141,7 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.Da
 
 
 def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShifts]:
-    """Shift of Cw from the tows of an era to the next tow of the same boat and crew, later.
+    """Estimate the shift of Cw from the tows of an era to later tows of the same boat and crew.
 
     Per method, era but the last, and boat type; also over all types. The shift is a median with
     an interval from order statistics. Ageing is the median change per year of all pairs within the
@@ -166,11 +167,10 @@ def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[
         within = own.filter((pl.col("season_before") >= ERAS[-1].first) & (_years() > 0))
         yearly = within.select(pl.col("ln_ratio") / _years()).to_series().to_numpy()
         groups = {ALL_TYPES: own} | {t: own.filter(pl.col("boat_type") == t) for t in types}
-        rows += [
-            {"method": method, "boat_type": boat_type, "era": era.name} | _shift(group, era, yearly)
-            for boat_type, group in groups.items()
-            for era in ERAS[:-1]
-        ]
+        for boat_type, group in groups.items():
+            for era in ERAS[:-1]:
+                key: Row = {"method": method, "boat_type": boat_type, "era": era.name}
+                rows.append(key | _shift(group, era, yearly))
     return frame_of(EraShifts, rows)
 
 
@@ -179,7 +179,7 @@ def _years() -> pl.Expr:
 
 
 def _shift(pairs: pl.DataFrame, era: Era, yearly: FloatArray) -> Row:
-    """Shift from an era to later ones, less ageing by its changes of ln Cw per year."""
+    """Return the shift from an era to later ones, less ageing by its changes of ln Cw per year."""
     across = pairs.filter(
         pl.col("season_before").is_between(era.first, era.last) & (pl.col("season") > era.last)
     )

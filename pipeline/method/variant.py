@@ -86,7 +86,7 @@ def variant(
 
 
 def differences(method: Method, parent: Method) -> list[Difference]:
-    """Options in which a method differs from another that covers its seasons.
+    """Return options in which a method differs from another that covers its seasons.
 
     Returns:
         By step and option in the order of `Steps`, then by season.
@@ -95,10 +95,8 @@ def differences(method: Method, parent: Method) -> list[Difference]:
     changed: list[Difference] = []
     for step, option in _options():
         for block in pieces:
-            old, new = (
-                getattr(getattr(steps, step), option)
-                for steps in (parent.get_steps(block.first), block.steps)
-            )
+            old = getattr(getattr(parent.get_steps(block.first), step), option)
+            new = getattr(getattr(block.steps, step), option)
             if old != new:
                 one = Difference(step, option, block.first, block.last, (old,), new)
                 changed[-1:] = _together(changed[-1:], one)

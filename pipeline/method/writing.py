@@ -67,7 +67,7 @@ def write_override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]
 
 
 def step_lines(steps: Mapping[str, Mapping[str, object]]) -> list[str]:
-    """One line per step, with its options."""
+    """Return one line per step, with its options."""
     return [
         f"{step} = {{ {', '.join(key_lines(options))} }}"
         for step, options in steps.items()
@@ -76,7 +76,7 @@ def step_lines(steps: Mapping[str, Mapping[str, object]]) -> list[str]:
 
 
 def key_lines(values: Mapping[str, object]) -> list[str]:
-    """Texts, numbers, truth values or lists as TOML, which differs from JSON in one character."""
+    """Return texts, numbers, truth values and lists as lines of TOML."""
     return [
         f"{key} = {json.dumps(value, ensure_ascii=False)}".replace("\x7f", "\\u007f")
         for key, value in values.items()
@@ -84,7 +84,7 @@ def key_lines(values: Mapping[str, object]) -> list[str]:
 
 
 def covered(method: Method) -> str:
-    """All seasons of a method, as method files write them."""
+    """Return all seasons of a method, as method files write them."""
     return range_text(method.ranges[0].first, method.ranges[-1].last)
 
 

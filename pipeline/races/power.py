@@ -23,13 +23,24 @@ def find_line_curves(lines: pl.DataFrame, suffix: str = "") -> tuple[FloatArray,
         lines: `a_kg_m`, `b_m_s`, `cw_kg_m`, `declared_speed_m_s`, each with the suffix.
         suffix: of the columns that are read.
     """
-    a, b, c, v = (
-        lines[f"{name}{suffix}"].to_numpy()
-        for name in ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s")
-    )
+    a = lines[f"a_kg_m{suffix}"].to_numpy()
+    b = lines[f"b_m_s{suffix}"].to_numpy()
+    c = lines[f"cw_kg_m{suffix}"].to_numpy()
+    v = lines[f"declared_speed_m_s{suffix}"].to_numpy()
     has_b = np.isfinite(b)
     s = np.where(has_b, s_of_b(np.where(has_b, b, 1.0)), s_of_height(a, c, v))
     return a, s
+
+
+def compute_line_cw(lines: pl.DataFrame, speed_m_s: FloatArray | pl.Series) -> FloatArray:
+    """Return Cw [kg/m] of each line at a speed; infinite from its B on.
+
+    Args:
+        lines: as `find_line_curves` takes them.
+        speed_m_s: a speed for each line.
+    """
+    a, s = find_line_curves(lines)
+    return cw(a, s, speed_m_s)
 
 
 def speed_at_power(a_kg_m: FloatArray, s_s2_m2: FloatArray, power_w: FloatArray) -> FloatArray:

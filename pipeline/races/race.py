@@ -24,19 +24,22 @@ between them."""
 
 
 def mean_speed_m_s(distance_m: ArrayLike, time_s: ArrayLike) -> FloatArray:
-    """Mean speed [m/s] through the water; take the current off the distance beforehand."""
-    distance, time = (np.asarray(x, dtype=np.float64) for x in (distance_m, time_s))
+    """Return the mean speed [m/s] through the water of a distance without the current."""
+    distance = np.asarray(distance_m, dtype=np.float64)
+    time = np.asarray(time_s, dtype=np.float64)
     return distance / time
 
 
 def power_per_rower_w(cw_kg_m: ArrayLike, speed_m_s: ArrayLike, rowers: ArrayLike) -> FloatArray:
-    """Power per rower [W]: Cw(v) v^3 / n (presentation R. Pot, 24 January 2015)."""
-    cw, speed, number = (np.asarray(x, dtype=np.float64) for x in (cw_kg_m, speed_m_s, rowers))
+    """Return the power per rower [W]: Cw(v) v^3 / n (presentation R. Pot, 24 January 2015)."""
+    cw = np.asarray(cw_kg_m, dtype=np.float64)
+    speed = np.asarray(speed_m_s, dtype=np.float64)
+    number = np.asarray(rowers, dtype=np.float64)
     return cw * speed**3 / number
 
 
 def reference_power_share(time_s: ArrayLike, outside: Outside = "refuse") -> FloatArray:
-    """Share of the reference power that a crew keeps up on average over a race of that length.
+    """Return the share of the reference power that a crew keeps up in a race of that length.
 
     Only two points of the reference curve are public. Between them a power law of time is taken:
     straight in the logarithms, so it falls ever more slowly, as the source describes it.
@@ -67,7 +70,7 @@ def reference_power_share(time_s: ArrayLike, outside: Outside = "refuse") -> Flo
 def fatigue_factor(
     time_s: ArrayLike, winning_time_s: ArrayLike, outside: Outside = "refuse"
 ) -> FloatArray:
-    """Factor on a crew's power for rowing longer than the winner; 1 for the winner.
+    """Return the factor on a crew's power for rowing longer than the winner; 1 for the winner.
 
     Raises:
         MissingKnowledgeError: see `reference_power_share`.

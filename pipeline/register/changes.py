@@ -104,17 +104,17 @@ def compare_lines(
     )
     in_both = (pairs["cw_kg_m"].is_not_null() & pairs["cw_kg_m_new"].is_not_null()).to_numpy()
     speed = pairs["declared_speed_m_s"].fill_null(1.0).to_numpy()
-    old_curve = _fill_curve(*find_line_curves(pairs))
-    new_curve = _fill_curve(*find_line_curves(pairs, "_new"))
+    old_a, old_s = _find_filled_curves(pairs, "")
+    new_a, new_s = _find_filled_curves(pairs, "_new")
 
     def ratio_at(share: float) -> FloatArray:
-        ratio = cw(*new_curve, share * speed) / cw(*old_curve, share * speed)
+        ratio = cw(new_a, new_s, share * speed) / cw(old_a, old_s, share * speed)
         return np.where(in_both, ratio, np.nan)
 
     slow, declared, fast = ratio_at(VALID_RATIO[0]), ratio_at(1.0), ratio_at(VALID_RATIO[1])
     compared = in_both & np.isfinite(declared)
-    power = np.where(compared, cw(*old_curve, speed), 0.0) * speed**3
-    same_power_speed = speed_at_power(*new_curve, power)
+    power = np.where(compared, cw(old_a, old_s, speed), 0.0) * speed**3
+    same_power_speed = speed_at_power(new_a, new_s, power)
     time_ratio = speed / np.where(compared & (same_power_speed > 0), same_power_speed, np.nan)
 
     largest = np.max(np.abs(np.nan_to_num(np.stack([slow, declared, fast]) - 1.0, nan=np.inf)), 0)
@@ -136,7 +136,7 @@ def compare_lines(
     return pairs.select(
         pl.lit(old["edition"].first(), pl.String).alias("from_edition"),
         pl.lit(new["edition"].first(), pl.String).alias("to_edition"),
-        *LINE,
+        pl.col(LINE),
         pl.Series("change", change, pl.String),
         known(declared).alias("cw_ratio"),
         known(declared).alias("power_ratio"),
@@ -144,7 +144,7 @@ def compare_lines(
         pl.Series("causes", causes, pl.String),
         known(slow, np.isfinite(slow)).alias("cw_ratio_slow"),
         known(fast, np.isfinite(fast)).alias("cw_ratio_fast"),
-        *(pl.col(name).alias(f"old_{name}") for name in SHOWN),
+        pl.col(SHOWN).name.prefix("old_"),
         *(pl.col(f"{name}_new").alias(f"new_{name}") for name in SHOWN),
         pl.Series("old_power_w", old_power).fill_nan(None),
         known(old_power * declared).alias("new_power_w"),
@@ -156,7 +156,7 @@ def compare_lines(
 def largest_first(lines: pl.DataFrame) -> pl.DataFrame:
     """Sort lines by the size of their change, whatever its sign; those without a ratio on top."""
     size = pl.col("cw_ratio").log().abs().fill_null(math.inf)
-    return lines.sort(size, *LINE, descending=[True, *(False for _ in LINE)])
+    return lines.sort(-size, pl.col(LINE))
 
 
 def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
@@ -167,33 +167,35 @@ def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame
         ladder: `tow_id`, `position`, `step`, `factor`.
     """
     steps = (
-        register.select(*LINE, "tow_id")
+        register.select(pl.col(LINE), "tow_id")
         .join(ladder, on="tow_id", maintain_order="left")
-        .sort(*LINE, "position")
+        .sort(pl.col(LINE), "position")
     )
     factor = pl.col("factor").cast(pl.Float64)
-    return steps.select(*LINE, pl.lit("method").alias("cause"), "step", factor)
+    return steps.select(pl.col(LINE), pl.lit("method").alias("cause"), "step", factor)
 
 
-def _fill_curve(a: FloatArray, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _find_filled_curves(pairs: pl.DataFrame, suffix: str) -> tuple[FloatArray, FloatArray]:
     """Return A and s = 1/B^2; where a register has no line, those of a harmless curve."""
+    a, s = find_line_curves(pairs, suffix)
     has_curve = np.isfinite(a) & np.isfinite(s)
     return np.where(has_curve, a, 1.0), np.where(has_curve, s, 0.0)
 
 
 def _rank(register: pl.DataFrame) -> pl.DataFrame:
-    """Lines with a curve, and their rank by speed at equal power within the class."""
-    lines = register.drop_nulls("cw_kg_m").select(*LINE, *COMPARED)
+    """Return lines with a curve, and their rank by speed at equal power within the class."""
+    lines = register.drop_nulls("cw_kg_m").select(pl.col(LINE), pl.col(COMPARED))
     power = (
         lines["crew_class"].replace_strict(ROWER_POWER_W, return_dtype=pl.Float64) * lines["rowers"]
     )
-    speed = pl.Series("speed", speed_at_power(*find_line_curves(lines), power.to_numpy()))
+    a, s = find_line_curves(lines)
+    speed = pl.Series(speed_at_power(a, s, power.to_numpy()))
     rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
-    return lines.with_columns(speed).with_columns(rank=rank).drop("speed")
+    return lines.with_columns(speed=speed).with_columns(rank=rank).drop("speed")
 
 
 def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:
-    """Half the 95 % interval of ln Cw; infinite where it is not known."""
+    """Return half the 95 % interval of ln Cw; infinite where it is not known."""
     low = pairs[f"cw_lo_kg_m{suffix}"].to_numpy()
     high = pairs[f"cw_hi_kg_m{suffix}"].to_numpy()
     known = np.isfinite(low) & np.isfinite(high) & (low > 0)
@@ -208,7 +210,9 @@ def _explain(
     moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
     parts_of = moved.rows_by_key(LINE, named=True)
     grounds = grounds if grounds is not None else pl.DataFrame(schema=[*LINE, "ground"])
-    ground_of = {tuple(line): ground for *line, ground in grounds.select(*LINE, "ground").rows()}
+    ground_of = {
+        tuple(line): ground for *line, ground in grounds.select(pl.col(LINE), "ground").rows()
+    }
     explained = []
     for pair, ratio in zip(pairs.iter_rows(named=True), ratios.tolist(), strict=True):
         causes: list[Row] = []
@@ -218,13 +222,9 @@ def _explain(
             causes = [{k: v for k, v in part.items() if v is not None} for part in known]
             remainder = ratio / math.prod(cause["factor"] for cause in causes)
             if abs(remainder - 1.0) > NO_FACTOR or not causes:
-                ground = ground_of.get(line) or _default_ground(pair)
-                causes.append({"cause": ground, "factor": remainder})
+                ground = "method" if pair["tow_id"] == pair["tow_id_new"] else "tow"
+                if pair["tow_id"] is None or pair["tow_id_new"] is None:
+                    ground = "printed"
+                causes.append({"cause": ground_of.get(line, ground), "factor": remainder})
         explained.append(json.dumps(causes))
     return explained
-
-
-def _default_ground(pair: Row) -> str:
-    if pair["tow_id"] is None or pair["tow_id_new"] is None:
-        return "printed"
-    return "method" if pair["tow_id"] == pair["tow_id_new"] else "tow"

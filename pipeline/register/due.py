@@ -37,7 +37,7 @@ NOTHING_KNOWN = "nothing_known"
 def due_list(
     register: pl.DataFrame, boats: pl.DataFrame, results: pl.DataFrame, as_of: dt.date
 ) -> pl.DataFrame:
-    """Every boat and crew with the day its tow expires and the speed of its next tow.
+    """Return every boat and crew with the day its tow expires and the speed of its next tow.
 
     The speed that the crew will declare is taken to be that of its last tow. It is kept where it is
     realistic, and brought down to the upper end where it takes more power. Where it takes less it
@@ -70,15 +70,24 @@ def due_list(
     own = lines.filter(pl.col("a_kg_m").is_not_null())
     known = own.with_columns(_powers(own)).with_columns(_find_speed_of_own_curve())
     without = _find_speed_of_like_boats(lines.join(own, on=LINE, how="anti"), known)
-    low, high = (pl.col("declared_speed_m_s") * ratio for ratio in VALID_RATIO)
+    low = pl.col("declared_speed_m_s") * VALID_RATIO[0]
+    high = pl.col("declared_speed_m_s") * VALID_RATIO[1]
     return (
         pl.concat([known, without], how="diagonal_relaxed")
         .select(
-            *LINE,
+            pl.col(LINE),
             pl.lit(as_of).alias("as_of"),
-            *("status", "tow_id", "tow_date", "valid_until", "declared_speed_m_s", "power_w"),
-            *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s"),
-            *("tow_speed_m_s", "speed_reason"),
+            "status",
+            "tow_id",
+            "tow_date",
+            "valid_until",
+            "declared_speed_m_s",
+            "power_w",
+            "raced_speed_m_s",
+            "lowest_speed_m_s",
+            "highest_speed_m_s",
+            "tow_speed_m_s",
+            "speed_reason",
             (~pl.col("tow_speed_m_s").is_between(low, high)).alias("beyond_curve"),
         )
         .sort(LINE)
@@ -96,7 +105,7 @@ def _raced(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
 
 
 def _powers(lines: pl.DataFrame) -> list[pl.Series]:
-    """Power at the declared speed, and the speeds at both ends of the realistic range."""
+    """Return the power at the declared speed, and both ends of the realistic range of speeds."""
     a, s = find_line_curves(lines)
     rowers = lines["rowers"].to_numpy()
     power = power_per_rower_w(lines["cw_kg_m"], lines["declared_speed_m_s"], rowers)
@@ -108,7 +117,7 @@ def _powers(lines: pl.DataFrame) -> list[pl.Series]:
 
 
 def _find_speed_of_own_curve() -> list[pl.Expr]:
-    """Speed of the next tow by the boat's own curve, and why."""
+    """Return the speed of the next tow by the boat's own curve, and why."""
     declared, raced = pl.col("declared_speed_m_s"), pl.col("raced_speed_m_s")
     lowest, highest = pl.col("lowest_speed_m_s"), pl.col("highest_speed_m_s")
     cases = [
@@ -126,7 +135,7 @@ def _find_speed_of_own_curve() -> list[pl.Expr]:
 
 
 def _find_speed_of_like_boats(lines: pl.DataFrame, known: pl.DataFrame) -> pl.DataFrame:
-    """Medians of boats of the same type and crew, for lines without a curve."""
+    """Return medians of boats of the same type and crew, for lines without a curve."""
     like = ["boat_type", "rowers", "crew_class"]
     ends = ("lowest_speed_m_s", "highest_speed_m_s")
     typical = (

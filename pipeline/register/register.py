@@ -64,7 +64,7 @@ NO_DECISIONS: Final = pl.DataFrame(schema=DECISION_SCHEMA)
 
 
 def add_empty_thwart(lines: pl.DataFrame) -> pl.DataFrame:
-    """Lines that were made before they said which thwart was left free."""
+    """Add the column `empty_thwart` to lines that were made before it existed."""
     if "empty_thwart" in lines.columns:
         return lines
     return lines.with_columns(pl.lit(NO_EMPTY_THWART).alias("empty_thwart"))
@@ -137,7 +137,7 @@ def draft_register(
     history = lines_of_all_days(curves, made_by_then, rule, decisions, carried)
     chosen = lines_on_days(history, [on_date]).drop("as_of")
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(
-        *LINE[:-1], pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
+        pl.col(LINE[:-1]), pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
     )
     without = [
         (sound.join(chosen, on=LINE, how="anti"), "excluded"),
@@ -179,12 +179,12 @@ def lines_of_all_days(
     until = valid_until(pl.col("tow_date"), rule).alias("valid_until")
     lines = allowed.with_columns(until, basis=pl.lit(MEASURED), is_preferred=is_preferred)
     if carried is not None:
-        printed = carried.select(*LINE, *CARRIED_COLUMNS)
+        printed = carried.select(pl.col(LINE), pl.col(CARRIED_COLUMNS))
         lines = pl.concat([lines, printed], how="diagonal_relaxed")
     ordered = lines.sort(
         pl.col("is_preferred").fill_null(value=False), "tow_date", "tow_id", maintain_order=True
     )
-    return ordered.select(*LINE, *CURVE_COLUMNS)
+    return ordered.select(pl.col(LINE), pl.col(CURVE_COLUMNS))
 
 
 def lines_on_days(
@@ -216,7 +216,7 @@ def lines_on_days(
 def tow_days(tows: pl.DataFrame) -> pl.DataFrame:
     """Return the line and day of tows: columns `TOW_DAY`."""
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
-    return tows.select(*LINE[:-1], thwart, "tow_date")
+    return tows.select(pl.col(LINE[:-1]), thwart, "tow_date")
 
 
 def unmeasured_tows(
@@ -251,7 +251,7 @@ def flag_unmeasured(
         unmeasured: rows of `unmeasured_tows`.
         decisions: as for `draft_register`; a preferred tow counts whatever is newer.
     """
-    newer = unmeasured.select(*LINE, unmeasured_on="tow_date")
+    newer = unmeasured.select(pl.col(LINE), unmeasured_on="tow_date")
     joined = lines.join(newer, on=LINE, how="left", maintain_order="left")
     preferred = _add_verdict(decisions, PREFER)["tow_id"].to_list()
     is_older = (
@@ -265,7 +265,7 @@ def flag_unmeasured(
 
 
 def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Curves with the day of their tow and the thwart that was left free."""
+    """Return curves with the day of their tow and the thwart that was left free."""
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
     return curves.join(
         tows.select("tow_id", "tow_date", thwart), on="tow_id", maintain_order="left"
@@ -273,7 +273,7 @@ def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
-    """Tows that the rest of the archive rules out and nobody preferred after looking."""
+    """Return tows that the rest of the archive rules out and nobody confirmed."""
     if "doubts" not in tows.columns:
         return tows.clear()
     doubted = tows.filter(pl.col("doubts").list.len() > 0)
@@ -281,7 +281,7 @@ def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
 
 
 def apply_rule(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
-    """Curves with the estimate that the rule asks for; A follows Cw, B stays."""
+    """Return curves with the estimate that the rule asks for; A follows Cw, B stays."""
     if rule.estimate == "as_measured":
         return curves
     best = pl.col("cw_best_kg_m").is_not_null()

@@ -47,7 +47,7 @@ class RaceRules:
 
 
 def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.DataFrame:
-    """Power and rank of every result under the lines that counted on its day.
+    """Return the power and rank of every result under the lines that counted on its day.
 
     Args:
         lines: `LINE`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`, `a_kg_m`, `b_m_s`,
@@ -67,7 +67,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     Raises:
         MissingKnowledgeError: a race time outside what is known of fatigue.
     """
-    rowed = _add_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
+    rowed = _add_lines(results.sort(pl.col(RACE), pl.col(LINE)), lines.drop_nulls("a_kg_m"))
     through_water = rowed["distance_m"] - rowed["stream_m"].fill_null(0.0)
     speed = mean_speed_m_s(through_water, rowed["rowing_time_s"])
     a, s = find_line_curves(rowed)
@@ -77,7 +77,8 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     fatigue = _fatigue(rowed, rules)
     power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, rowed["rowers"]) * fatigue
     penalty = rowed["penalty_w"].fill_null(0.0).to_numpy()
-    low, high = (ratio * rowed["declared_speed_m_s"].to_numpy() for ratio in VALID_RATIO)
+    declared = rowed["declared_speed_m_s"].to_numpy()
+    low, high = VALID_RATIO[0] * declared, VALID_RATIO[1] * declared
     beyond = (speed < low) | (speed > high)
     without = rowed["without"].to_numpy()
     remark = np.select([~has_line, ~sound, beyond], [without, ABOVE_B, BEYOND_CURVE], "")
@@ -93,21 +94,21 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
             pl.Series("remark", remark, pl.String),
         )
         .with_columns(rank.alias("rank"))
-        .sort(*CLASSIFICATION, "rank", *LINE, nulls_last=True)
+        .sort(pl.col(CLASSIFICATION), "rank", pl.col(LINE), nulls_last=True)
     )
 
 
 def _add_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
-    """Results with the line that counted on their day, or `without`: why there is none.
+    """Add to each result the line that counted on its day, or why there is none (`without`).
 
     A result that names no empty thwart was rowed with all manned, where the boat has such a line;
     else with the one thwart free that its line asks for.
     """
     crew = LINE[:-1]
-    facts = (*("tow_id", "tow_date", "valid_until"), *CURVE)
+    facts = ("tow_id", "tow_date", "valid_until", *CURVE)  # fmt: skip
     numbered = results.with_row_index("result").rename({"empty_thwart": "given"})
     pairs = numbered.select("result", "race_date", *crew, "given").join(
-        lines.select(*LINE, *facts), on=crew, maintain_order="left_right"
+        lines.select(pl.col(LINE), *facts), on=crew, maintain_order="left_right"
     )
     fits = pl.col("given").is_null() | (pl.col("given") == pl.col("empty_thwart"))
     begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= pl.col("race_date"))
@@ -145,7 +146,7 @@ def _add_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
 
 
 def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """Return what another register does to races: power, place and podium of every result.
+    """Compare power, place and podium of every result under two registers.
 
     Places are among the crews of a class with a power under both registers: a crew that only one
     of them ranks would move all others.
@@ -160,16 +161,16 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """
     columns = ["power_w", "rank", "remark"]
     before, after = _placed_under_both(old, new), _placed_under_both(new, old)
-    pairs = before.select(*RESULT, *columns).join(
-        after.select(*RESULT, "empty_thwart", *columns),
+    pairs = before.select(pl.col(RESULT), *columns).join(
+        after.select(pl.col(RESULT), "empty_thwart", *columns),
         on=RESULT,
         suffix="_new",
         maintain_order="left",
     )
     podiums = (pl.col(name) <= PODIUM for name in ("rank", "rank_new"))
     return pairs.select(
-        *RACE,
-        *LINE,
+        pl.col(RACE),
+        pl.col(LINE),
         "rowing_time_s",
         pl.col("power_w").alias("old_power_w"),
         pl.col("power_w_new").alias("new_power_w"),
@@ -178,12 +179,12 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         pl.col("rank").alias("old_rank"),
         pl.col("rank_new").alias("new_rank"),
         operator.ne(*podiums).alias("podium_changed"),
-    ).sort(*CLASSIFICATION, "new_rank", "fsn_no", nulls_last=True)
+    ).sort(pl.col(CLASSIFICATION), "new_rank", "fsn_no", nulls_last=True)
 
 
 def _placed_under_both(results: pl.DataFrame, others: pl.DataFrame) -> pl.DataFrame:
-    """Results with `rank` among those of race and class with a power in `others` too, else null."""
-    both = others.drop_nulls("power_w").select(*RESULT, shared=pl.lit(True))
+    """Rank results among those that have a power in `others` too; null for the rest."""
+    both = others.drop_nulls("power_w").select(pl.col(RESULT), shared=pl.lit(True))
     placed = results.join(both, on=RESULT, how="left", maintain_order="left")
     among = pl.when(pl.col("shared")).then("rank")
     rank = among.rank("min").over(CLASSIFICATION).cast(pl.Int32)
@@ -191,7 +192,7 @@ def _placed_under_both(results: pl.DataFrame, others: pl.DataFrame) -> pl.DataFr
 
 
 def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) -> pl.DataFrame:
-    """Who wins each race and class under two registers, and how likely it is not the old winner.
+    """Find who wins each race and class under two registers, and how likely another wins.
 
     Of the crews that both registers rank, as in `race_changes`. How likely is the share of equally
     likely new registers in which another of them has the highest power. A line without members
@@ -214,11 +215,17 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
             pl.col("fsn_no").first().alias(f"{side}_winner"), _CREW.first().alias(side)
         )
         both = both.join(winners, on=CLASSIFICATION, how="left", maintain_order="left")
-    chances = _change_probabilities(after, both.select(*CLASSIFICATION, "old"), members)
+    chances = _change_probabilities(after, both.select(pl.col(CLASSIFICATION), "old"), members)
     return (
         both.join(chances, on=CLASSIFICATION, how="left", maintain_order="left")
         .with_columns(winner_changed=pl.col("old").ne_missing(pl.col("new")))
-        .select(*CLASSIFICATION, "old_winner", "new_winner", "winner_changed", "change_probability")
+        .select(
+            pl.col(CLASSIFICATION),
+            "old_winner",
+            "new_winner",
+            "winner_changed",
+            "change_probability",
+        )
         .sort(CLASSIFICATION)
     )
 
@@ -229,7 +236,7 @@ _CREW: Final = pl.concat_str(LINE, separator=" ")
 def _change_probabilities(
     results: pl.DataFrame, old_winners: pl.DataFrame, members: pl.DataFrame
 ) -> pl.DataFrame:
-    """Per race and class in which the old winner has a power, how likely another wins.
+    """Return how likely another than the old winner wins each race and class.
 
     Power is proportional to Cw, and the error of Cw at the declared speed is taken for that at the
     speed rowed: sound within the range in which a curve is valid. A penalty does not follow Cw.
@@ -248,7 +255,7 @@ def _change_probabilities(
         .join(drawn.select("member").unique().sort("member"), how="cross", maintain_order="left")
         .join(drawn, on=["tow_id", "member"], how="left", maintain_order="left")
         .with_columns(power=(pl.col("power_w") + penalty) * grows - penalty)
-        .group_by(*CLASSIFICATION, "member", maintain_order=True)
+        .group_by(pl.col(CLASSIFICATION), "member", maintain_order=True)
         .agg(pl.col("crew").get(pl.col("power").arg_max()), pl.col("old").first())
         .group_by(CLASSIFICATION, maintain_order=True)
         .agg((pl.col("crew") != pl.col("old")).mean().alias("change_probability"))
@@ -256,7 +263,7 @@ def _change_probabilities(
 
 
 def _fatigue(results: pl.DataFrame, rules: RaceRules) -> FloatArray:
-    """Factor against the fastest sloop of the race."""
+    """Return the factor against the fastest sloop of the race."""
     if rules.fatigue == "none":
         return np.ones(results.height)
     fastest = results.select(pl.col("rowing_time_s").min().over(RACE)).to_series()

@@ -39,7 +39,7 @@ def register_years(
         of the method by which that season's register was published.
     """
     registers = registers_of_years(history, methods, seasons)
-    own_facts = registers.select("year", "method", *LINE, "tow_date", "valid_until", "basis")
+    own_facts = registers.select("year", "method", pl.col(LINE), "tow_date", "valid_until", "basis")
     compared: list[pl.DataFrame] = [RegisterYears.create_empty()]
     for season in seasons:
         published = published_method(season, methods)
@@ -76,11 +76,11 @@ def registers_of_years(
         `year`, `edition`, `method`, `LINE` and `CURVE_COLUMNS`.
     """
     drafts = [draft_name(method.name) for method in methods]
-    lines = history.filter(pl.col("edition").is_in(drafts)).sort(*KEY, "position")
+    lines = history.filter(pl.col("edition").is_in(drafts)).sort(pl.col(KEY), "position")
     days = [dt.date(season, 12, 31) for season in seasons]
     valid = lines_on_days(lines, days, KEY).filter(status="valid")
     year = pl.col("as_of").dt.year().alias("year")
-    return valid.select(year, *KEY, *CURVE_COLUMNS).sort("year", *KEY)
+    return valid.select(year, pl.col(KEY), pl.col(CURVE_COLUMNS)).sort("year", pl.col(KEY))
 
 
 def published_method(season: int, methods: Sequence[Method]) -> Method:

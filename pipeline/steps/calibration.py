@@ -16,7 +16,7 @@ from pipeline.channels import BACK, OUT
 def mean_over_both_ways(
     values: FloatArray, direction: IntArray, tow: IntArray, used: BoolArray, tows: int
 ) -> tuple[FloatArray, BoolArray]:
-    """Mean of the run means out and of those back, then the mean of the two, per tow.
+    """Return the mean per tow of the mean out and the mean back, over runs.
 
     With as many runs out as back this is the plain mean of run means; with one run lost it still
     lets a constant current drop out.

@@ -17,7 +17,7 @@ LIQUID_RANGE_C: Final = (0.0, 40.0)
 
 
 def water_density_kg_m3(temperature_c: ArrayLike) -> FloatArray:
-    """Density [kg/m3] of fresh water at atmospheric pressure, 0-40 C, good to 0.001 kg/m3.
+    """Return the density [kg/m3] of fresh water, 0-40 C, good to 0.001 kg/m3.
 
     Tanaka et al. 2001, Metrologia 38, 301-309 (the CIPM formula), without dissolved air.
 
@@ -30,7 +30,7 @@ def water_density_kg_m3(temperature_c: ArrayLike) -> FloatArray:
 
 
 def kinematic_viscosity_m2_s(temperature_c: ArrayLike) -> FloatArray:
-    """Kinematic viscosity [m2/s] of fresh water at atmospheric pressure, 0-40 C, good to 1 %.
+    """Return the kinematic viscosity [m2/s] of fresh water, 0-40 C, good to 1 %.
 
     Dynamic viscosity by the IAPWS supplementary release SR6-08 (Patek et al. 2009, J. Phys. Chem.
     Ref. Data 38, 21-29), divided by the density.
@@ -51,12 +51,12 @@ def kinematic_viscosity_m2_s(temperature_c: ArrayLike) -> FloatArray:
 def reynolds_number(
     speed_m_s: FloatArray, length_m: FloatArray, kinematic_viscosity_m2_s: FloatArray
 ) -> FloatArray:
-    """V L / nu."""
+    """Return the Reynolds number V L / nu."""
     return speed_m_s * length_m / kinematic_viscosity_m2_s
 
 
 def ittc57_friction_coefficient(reynolds: FloatArray) -> FloatArray:
-    """ITTC-57 model-ship correlation line: 0.075 / (log10 Re - 2)^2."""
+    """Return CF by the ITTC-57 correlation line: 0.075 / (log10 Re - 2)^2."""
     return 0.075 / (np.log10(reynolds) - 2.0) ** 2
 
 
@@ -66,7 +66,7 @@ def friction_cw_kg_m(
     wetted_surface_m2: FloatArray,
     temperature_c: ArrayLike,
 ) -> FloatArray:
-    """Part of Cw [kg/m] due to friction: rho/2 S CF, CF by ITTC-57 on the given length."""
+    """Return the part of Cw [kg/m] due to friction: rho/2 S CF, CF by ITTC-57 on the length."""
     reynolds = reynolds_number(speed_m_s, length_m, kinematic_viscosity_m2_s(temperature_c))
     coefficient = ittc57_friction_coefficient(reynolds)
     return 0.5 * water_density_kg_m3(temperature_c) * wetted_surface_m2 * coefficient

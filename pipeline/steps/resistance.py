@@ -152,7 +152,7 @@ def run_means(
     oblique: BoolArray,
     accelerated_kg: FloatArray,
 ) -> RunMeans:
-    """Means of every run over its window.
+    """Return means of every run over its window.
 
     Args:
         over: as `window_means` gives them, with `start_s` and `end_s` of the window, and `rise_m_s`
@@ -199,7 +199,7 @@ def accelerated_mass_kg(tows: Tows) -> FloatArray:
 def temperature_change_kg_m(
     tows: Tows, corrected: BoolArray, expected: BoolArray, speed_m_s: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Return what brings Cw to the reference temperature: friction there minus friction as towed.
+    """Return the change of Cw to the reference temperature: friction there less that as towed.
 
     Friction by the ITTC-57 line, without form factor, on the wetted surface of
     `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
@@ -223,14 +223,13 @@ def temperature_change_kg_m(
     length = tows.get_of_runs("waterline_length_m")
     surface = wetted_surface_m2(np.where(has_change, mass_kg, 0.0)[tows.tow], length)
     speed = _or_one(speed_m_s)
-    at_reference, as_towed = (
-        friction_cw_kg_m(speed, length, surface, t) for t in (REFERENCE_WATER_C, celsius[tows.tow])
-    )
+    at_reference = friction_cw_kg_m(speed, length, surface, REFERENCE_WATER_C)
+    as_towed = friction_cw_kg_m(speed, length, surface, celsius[tows.tow])
     return at_reference - as_towed, is_recorded
 
 
 def wetted_surface_m2(mass_kg: FloatArray, waterline_length_m: FloatArray) -> FloatArray:
-    """Wetted surface of a boat with its crew: c sqrt(V L), with V in fresh water, m2."""
+    """Return the wetted surface c sqrt(V L) [m2] of a boat with its crew, V in fresh water."""
     volume_m3 = mass_kg / water_density_kg_m3(15.0)
     return np.asarray(WETTED_SURFACE_RATIO * np.sqrt(volume_m3 * waterline_length_m))
 

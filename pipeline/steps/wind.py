@@ -51,7 +51,7 @@ def air_parts(
     front_area_m2: FloatArray,
     side_area_m2: FloatArray,
 ) -> AirParts:
-    """Air resistance of each run for drag coefficients of 1.
+    """Return the air resistance of each run for drag coefficients of 1.
 
     - head: F = rho/2 front Cvt u|u| with u = w cos a (presentation 2015, "Windweerstand")
     - oblique: F = rho/2 (front |cos a| Cvt + side |sin a| Cvd) (w cos a)^2, with the sign of cos a
@@ -64,14 +64,13 @@ def air_parts(
     """
     front = 0.5 * AIR_DENSITY_KG_M3 * front_area_m2
     side = 0.5 * AIR_DENSITY_KG_M3 * side_area_m2
-    ahead, behind = (
-        np.where(oblique, term(f"front_{way}"), term(f"head_{way}")) for way in ("ahead", "behind")
-    )
+    ahead = np.where(oblique, term("front_ahead"), term("head_ahead"))
+    behind = np.where(oblique, term("front_behind"), term("head_behind"))
     return AirParts(front * ahead, front * behind, np.where(oblique, side * term("side"), 0.0))
 
 
 def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]:
-    """Air terms of each block from the mean wind of some seconds around it.
+    """Return air terms of each block from the mean wind of some seconds around it.
 
     The vane jitters, and the square of a jittering wind is not the square of its mean: per
     sample the force comes out -17 to +12 % wrong (docs/method-details.md, 5). Mean wind is the mean
@@ -145,7 +144,7 @@ def nearest_coefficients(air: AirParts, excess_kg_m: FloatArray) -> tuple[FloatA
 
 
 def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
-    """Quotient within `PER_RUN_BOUNDS`; its lower bound where there is no wind at all."""
+    """Return the quotient within `PER_RUN_BOUNDS`; the lower bound where there is no wind."""
     some = np.abs(denominator) > 1e-12
     return np.clip(
         np.where(some, numerator, 0.0) / np.where(some, denominator, 1.0), *PER_RUN_BOUNDS
@@ -153,5 +152,5 @@ def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatAr
 
 
 def mean_angle_deg(sin: FloatArray, cos: FloatArray) -> FloatArray:
-    """Circular mean of the vane by sums or means of its sine and cosine, degrees in [0, 360)."""
+    """Return the circular mean of the vane, from its sine and cosine, degrees in [0, 360)."""
     return np.asarray(np.degrees(np.arctan2(sin, cos)) % 360.0, dtype=np.float64)

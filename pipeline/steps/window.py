@@ -304,7 +304,7 @@ def find_best_windows(
 
 
 def explain_cuts(is_present: BoolArray, mask: BoolArray, faults: Faults) -> tuple[str, ...]:
-    """Return what was wrong in the part that was cut, as codes joined by commas, per run."""
+    """Return why the cut part was cut, as codes joined by commas, per run."""
     is_cut = is_present & ~mask
     faulty = (faults.is_ramp, faults.force_peak > 1.0, faults.gust > 1.0)
     explained = np.stack([(is_cut & fault).any(axis=1) for fault in faulty], axis=1)

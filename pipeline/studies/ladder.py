@@ -60,9 +60,8 @@ def ladder(
         step; 1 at the start) and `cw_kg_m` (after it). The factors of a tow multiply to its total.
     """
     cache = cache or RunCache()
-    old, new = (
-        Plan.from_method(method, tows, blocks, cache) for method in (from_method, to_method)
-    )
+    old = Plan.from_method(from_method, tows, blocks, cache)
+    new = Plan.from_method(to_method, tows, blocks, cache)
     of_old, of_new = links or (_instruments(plan) for plan in (old, new))
     rungs: list[Computed] = []
     for count in range(len(STEP_ORDER) + 1):
@@ -93,7 +92,7 @@ def _mixed(old: Plan, new: Plan, count: int) -> Plan:
 
 
 def _add_factors(rungs: list[Computed]) -> pl.DataFrame:
-    """Return what each rung makes of every tow, and its factor on the one before."""
+    """Return the curves of every tow after each rung, and the factor on the rung before."""
     cw = np.stack([one.cw_at_declared for one in rungs])
     sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
     for rung in range(1, len(cw)):

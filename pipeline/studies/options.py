@@ -79,11 +79,10 @@ def option_effects(
     names = [name for name in CHOICES if name != FACTOR or can.any()]
     crossed = {name: (name, CHOICES[name]) for name in names if name != B}
     capped = plan.replace_steps(lambda steps: replace_options(steps, {B: "capped"}))
-    frames = [
-        _curves(one, of_b).with_columns(_flags(flags | {B: of_b is one.free}))
-        for flags, one in _combinations(capped, crossed, links)
-        for of_b in (one.curves, one.free)
-    ]
+    frames = []
+    for flags, computed in _combinations(capped, crossed, links):
+        frames.append(_curves(computed, computed.curves, flags | {B: False}))
+        frames.append(_curves(computed, computed.free, flags | {B: True}))
     is_estimated = pl.Series(plan.options.speed.correction == "estimated")
     own_log = plan.tows.frame["tow_id"].filter(~is_estimated)
     whole = _select_complete(pl.concat(frames), ["tow_id"], len(names)).filter(
@@ -100,7 +99,7 @@ def option_effects(
 def option_curves(
     method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame, cache: RunCache
 ) -> pl.DataFrame:
-    """Curves of every tow under all combinations of `TICKS` and the speeds of its season.
+    """Return curves of every tow under all combinations of `TICKS` and the speeds of its season.
 
     Args:
         method, tows, blocks, links, cache: as `option_effects` takes them.
@@ -112,22 +111,19 @@ def option_curves(
     """
     plan = Plan.from_method(method, tows, blocks, cache)
     crossed = {name: choice for name, choice in TICKS.items() if name != B_FROM_LENGTH}
-    frames = [
-        _curves(one, of_b)
-        .filter(pl.col("tow_id").is_in(there.implode()))
-        .with_columns(
-            pl.lit(speed).alias("speed"), *_flags(flags | {B_FROM_LENGTH: of_b is not one.free})
-        )
-        for speed, there, way in _speeds(plan)
-        for flags, one in _combinations(way, crossed, links)
-        for of_b in (one.free, _from_length(one))
-    ]
+    frames = []
+    for speed, tow_ids, way in _speeds(plan):
+        for flags, computed in _combinations(way, crossed, links):
+            free = _curves(computed, computed.free, flags | {B_FROM_LENGTH: False})
+            tied = _curves(computed, _from_length(computed), flags | {B_FROM_LENGTH: True})
+            both = pl.concat([free, tied]).filter(pl.col("tow_id").is_in(tow_ids.implode()))
+            frames.append(both.with_columns(speed=pl.lit(speed)))
     key = ["tow_id", "speed", *TICKS]
-    return pl.concat(frames).select(*key, "a_kg_m", "b_m_s", "cw_kg_m").sort(key)
+    return pl.concat(frames).select(pl.col(key), "a_kg_m", "b_m_s", "cw_kg_m").sort(key)
 
 
 def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
-    """Return what each tick and each speed does to a tow, over all combinations of the others.
+    """Return the effect of each tick and each speed on a tow, over all combinations of the others.
 
     Args:
         curves: rows of `option_curves`.
@@ -146,7 +142,7 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
 
 
 def _speeds(plan: Plan) -> Iterator[tuple[str, pl.Series, Plan]]:
-    """Every speed, the tows that have it, and a plan under which these do."""
+    """Yield each speed, the tows that have it, and a plan under which they do."""
     ways = [_speeds_of(steps) for steps in plan.steps]
     for speed in (AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED):
         there = plan.tows.frame["tow_id"].filter([speed in ways[one] for one in plan.which])
@@ -184,7 +180,7 @@ def _combinations(
     crossed: Mapping[str, tuple[str, tuple[object, object]]],
     links: pl.DataFrame,
 ) -> Iterator[tuple[dict[str, bool], Computed]]:
-    """All combinations of choices: which are on, and what comes of them."""
+    """Yield all combinations of choices: which are on, and the curves under them."""
     for corner in itertools.product((False, True), repeat=len(crossed)):
         flags = dict(zip(crossed, corner, strict=True))
         values = {crossed[name][0]: crossed[name][1][on] for name, on in flags.items()}
@@ -197,7 +193,8 @@ def _from_length(computed: Computed) -> curve.Curves:
     return curve.fit_given_b(computed.points, hull)
 
 
-def _curves(computed: Computed, curves: curve.Curves) -> pl.DataFrame:
+def _curves(computed: Computed, curves: curve.Curves, flags: Mapping[str, bool]) -> pl.DataFrame:
+    """Return the curves of tows that have one, with a column for each choice that is on or off."""
     cw = computed.cw_at(1.0, curves)
     frame = pl.DataFrame(
         {
@@ -209,22 +206,19 @@ def _curves(computed: Computed, curves: curve.Curves) -> pl.DataFrame:
     )
     b = pl.col("b_m_s")
     return frame.filter(pl.col("cw_kg_m").is_finite()).with_columns(
-        pl.when(b.is_finite()).then(b).alias("b_m_s")
+        pl.when(b.is_finite()).then(b).alias("b_m_s"),
+        **{name: pl.lit(is_on) for name, is_on in flags.items()},
     )
 
 
-def _flags(flags: Mapping[str, bool]) -> list[pl.Expr]:
-    return [pl.lit(value).alias(name) for name, value in flags.items()]
-
-
 def _select_complete(curves: pl.DataFrame, key: list[str], choices: int) -> pl.DataFrame:
-    """Curves of the tows of which every combination gives one, with `ln_cw`."""
+    """Return curves of the tows of which every combination gives one, with `ln_cw`."""
     every = pl.len().over(key) == 2**choices
     return curves.filter(every).with_columns(ln_cw=pl.col("cw_kg_m").log())
 
 
 def _effect(whole: pl.DataFrame, name: str, on: pl.Expr | None = None) -> pl.DataFrame:
-    """Second value / first value of Cw; tows without both are left out."""
+    """Return the ratio of the second to the first Cw of each tow that has both."""
     on, ln_cw = pl.col(name) if on is None else on, pl.col("ln_cw")
     means = whole.group_by("tow_id", maintain_order=True).agg(
         pl.lit(name).alias("option"),

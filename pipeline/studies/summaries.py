@@ -9,14 +9,13 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.curve import cw
 from pipeline.method.definition import Method
-from pipeline.races.power import find_line_curves
+from pipeline.races.power import compute_line_cw
 from pipeline.tables.keys import LINE
 
 
 def season_changes(curves: pl.DataFrame, first_method: Method) -> pl.DataFrame:
-    """Cw of each method / Cw of the first method, of the same tow: median and range per season.
+    """Return median and range per season of Cw of each method over Cw of the first.
 
     Takes rows of `curves` of several methods; gives rows of the table `season_changes`.
     """
@@ -58,7 +57,9 @@ def print_reproduction(
         printed_registers.filter("has_valid_curve")
         .sort("season")
         .join(
-            tows.select("tow_id", "tow_date", *LINE), on=["tow_date", *LINE], maintain_order="left"
+            tows.select("tow_id", "tow_date", pl.col(LINE)),
+            on=["tow_date", *LINE],
+            maintain_order="left",
         )
         .unique("tow_id", keep="first", maintain_order=True)
         .select(
@@ -73,11 +74,18 @@ def print_reproduction(
     compared = (
         curves.drop_nulls("cw_kg_m")
         .select(
-            "method", "tow_id", "season", *LINE, "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s"
+            "method",
+            "tow_id",
+            "season",
+            pl.col(LINE),
+            "a_kg_m",
+            "b_m_s",
+            "cw_kg_m",
+            "declared_speed_m_s",
         )
         .join(of_tow, on="tow_id", maintain_order="left")
     )
-    there = cw(*find_line_curves(compared), compared["speed_m_s"])
+    there = compute_line_cw(compared, compared["speed_m_s"])
     known = pl.when(pl.Series(there).is_finite()).then(pl.Series(there))
     return (
         compared.with_columns(known.alias("cw_kg_m"))
@@ -92,7 +100,7 @@ SUMS: Final = ("log1_v", "gps", "gps_n", "force", "wind_v", "wind_sin", "wind_co
 
 
 def second_means(blocks: pl.DataFrame) -> pl.DataFrame:
-    """Means over every second of every run: what the instruments said.
+    """Return the mean of each channel over every second of every run.
 
     Args:
         blocks: rows of `pipeline.blocks.sums.block_sums` with `tow_id`.

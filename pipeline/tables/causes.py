@@ -37,7 +37,7 @@ STEPS: Final[dict[str, Sentence]] = {
 
 
 def name_cause(cause: str, step: str | None) -> Sentence:
-    """Return what a change comes from: a step of the method by its name, or another cause."""
+    """Return the source of a change: a step of the method by its name, or another cause."""
     if step is not None and step in STEPS:
         return STEPS[step]
     return CAUSES[cause]

@@ -300,25 +300,25 @@ class Kind(Enum):
 
 _KINDS: Final = {
     Kind.CHANGE: (
-        *("cw_ratio", "power_ratio", "time_ratio", "shift_ratio", "cw_effect_ratio", "total"),
-        *("median_ratio", "lo_ratio", "hi_ratio", "lowest_ratio", "highest_ratio"),
-        *("median_factor", "lowest_factor", "highest_factor", "median_power_ratio"),
-        *("printed_median_ratio", "printed_largest_ratio", "farthest_ratio", "mean_factor"),
+        "cw_ratio", "power_ratio", "time_ratio", "shift_ratio", "cw_effect_ratio", "total",
+        "median_ratio", "lo_ratio", "hi_ratio", "lowest_ratio", "highest_ratio",
+        "median_factor", "lowest_factor", "highest_factor", "median_power_ratio",
+        "printed_median_ratio", "printed_largest_ratio", "farthest_ratio", "mean_factor",
     ),
     Kind.SHARE: (
-        *("share_within_1pct", "share_within_2pct", "sd_ratio", "sd_lo_ratio", "sd_hi_ratio"),
-        *("within_sd_ratio", "cw_sd_ratio", "u_ratio", "p_fault", "own_weight", "weight_r2"),
-        *("spread_ratio", "spread_lo", "spread_hi", "error_ratio", "season_sd"),
+        "share_within_1pct", "share_within_2pct", "sd_ratio", "sd_lo_ratio", "sd_hi_ratio",
+        "within_sd_ratio", "cw_sd_ratio", "u_ratio", "p_fault", "own_weight", "weight_r2",
+        "spread_ratio", "spread_lo", "spread_hi", "error_ratio", "season_sd",
         "difference_that_matters",
     ),
     Kind.DURATION: ("rowing_time_s",),
     Kind.CHANCE: ("change_probability",),
     Kind.CODE: (
-        *("status", "flags", "flag", "reason", "cut_reason", "change", "source", "step", "code"),
-        *("component", "quantity", "explaining", "within", "severity", "check", "shared", "scope"),
-        *("old_remark", "new_remark", "choice", "pooling", "option", "speed_reason", "cause"),
-        *("log", "what", "outcome", "reason_code", "lost", "instrument", "verdict", "rule"),
-        *("confused_with", "rest_verdict", "weight_verdict", "tow_speed_verdict", "kind"),
+        "status", "flags", "flag", "reason", "cut_reason", "change", "source", "step", "code",
+        "component", "quantity", "explaining", "within", "severity", "check", "shared", "scope",
+        "old_remark", "new_remark", "choice", "pooling", "option", "speed_reason", "cause",
+        "log", "what", "outcome", "reason_code", "lost", "instrument", "verdict", "rule",
+        "confused_with", "rest_verdict", "weight_verdict", "tow_speed_verdict", "kind",
     ),
     Kind.CANDIDATES: ("candidates",),
     Kind.CAUSE: ("main_cause",),
@@ -326,7 +326,7 @@ _KINDS: Final = {
     Kind.METHOD: ("method", "from_method", "to_method"),
     Kind.EDITION: ("edition", "from_edition", "to_edition", "previous"),
     Kind.DIRECTION: ("direction",),
-}
+}  # fmt: skip
 KINDS: Final = {name: kind for kind, names in _KINDS.items() for name in names}
 """The kind of each column that is not plain."""
 

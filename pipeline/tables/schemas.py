@@ -42,9 +42,9 @@ TABLES: Final = _collect_tables(
 """Every class of these modules but those that begin with an underscore, which tables inherit."""
 
 STUDY: Final = (
-    *("hand_windows", "season_links", "best_estimate_weights", "option_curves"),
-    *("type_line_points", "print_reproduction"),
-)
+    "hand_windows", "season_links", "best_estimate_weights", "option_curves",
+    "type_line_points", "print_reproduction",
+)  # fmt: skip
 """Tables that studies and pages work with: in the database they are in the schema `study`."""
 
 ABOUT: Final = _collect_tables(about)
@@ -52,7 +52,7 @@ ABOUT: Final = _collect_tables(about)
 
 
 def summarize_table(schema: type[dy.Schema]) -> str:
-    """Return what a table holds, in one sentence; its Dutch is among the texts."""
+    """Return the meaning of a table in one sentence; its Dutch is among the texts."""
     return cleandoc(schema.__doc__ or "").partition("\n")[0]
 
 

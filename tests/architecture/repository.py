@@ -11,8 +11,11 @@ PACKAGES = ("herijk", "assets", "dashboards", "warehouse", "pipeline")
 
 
 def modules():
-    """Every module of the program."""
-    return [f for package in PACKAGES for f in sorted((ROOT / package).rglob("*.py"))]
+    """Every module of the program but templates, which are compiled again while others read."""
+    found = []
+    for package in PACKAGES:
+        found += sorted((ROOT / package).rglob("*.py"))
+    return [file for file in found if "compiled" not in file.parts]
 
 
 def read(path):

@@ -27,13 +27,14 @@ ROOT = Path(__file__).parents[2]
 class Ticks:
     """The sensor, asked again and again with the cursor it gave."""
 
-    def __init__(self, archive):
+    def __init__(self, archive, instance):
         self.sensor, self.cursor = archive_changed(archive, is_served=True), None
+        self.instance = instance
 
     def tick(self):
         """How many rebuilds a tick asks for."""
-        with dg.DagsterInstance.ephemeral() as instance:
-            found = self.sensor.evaluate_tick(dg.build_sensor_context(instance, self.cursor))
+        context = dg.build_sensor_context(self.instance, self.cursor)
+        found = self.sensor.evaluate_tick(context)
         self.cursor = found.cursor or self.cursor
         return len(found.run_requests or [])
 
@@ -59,10 +60,11 @@ def archive(tmp_path):
     ids=["came", "changed", "went", "hidden", "disk away"],
 )
 def test_a_file_that_came_changed_or_went_asks_for_one_rebuild(archive, change, asked):
-    sensor = Ticks(archive)
-    assert [sensor.tick() for _ in range(3)] == [0, 1, 0]
-    change(archive)
-    assert [sensor.tick() for _ in range(3)] == [0, asked, 0]
+    with dg.DagsterInstance.ephemeral() as instance:
+        sensor = Ticks(archive, instance)
+        assert [sensor.tick() for _ in range(3)] == [0, 1, 0]
+        change(archive)
+        assert [sensor.tick() for _ in range(3)] == [0, asked, 0]
 
 
 class MailServer(socketserver.StreamRequestHandler):

@@ -171,16 +171,6 @@ def test_made_elsewhere_season_by_season_the_tables_are_the_same(
         assert digest_table(found[name]) == digest_table(frame), name
 
 
-def test_one_method_gives_one_methods_rows(bench, built, files_read):
-    done = bench.rebuild(methods=["rebased-2015"]).done
-    assert (done.seasons, done.methods, done.database) == ([], ["rebased-2015"], True)
-    assert files_read == []
-    found = bench.tables()
-    for name in ("curves", "run_points", "log_factors", "register", "methods"):
-        assert_frame_equal(found[name], built.table(name).filter(method="rebased-2015"))
-    assert found["register_changes"].height == 0
-
-
 def test_lost_lake_files_are_made_again_when_their_season_is_read(bench, built):
     """Of one tow the samples are lost, of the next the blocks."""
     before = bench.lake_files().keys()

@@ -101,6 +101,7 @@ def test_what_is_searched_leads_to_pages(site):
     assert all((site / path).exists() for _, _, path in found)
 
 
+@pytest.mark.more
 def test_same_tables_same_bytes(store, site):
     before = hashes(site)
     build_site(store)

@@ -37,7 +37,7 @@ def squeeze(text):
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_terminal_says_every_statement_of_a_boats_page(results, language):
-    for fsn_no in results.views.table("tows")["fsn_no"].unique():
+    for fsn_no in results.views.table("tows")["fsn_no"].unique().sort().head(6):
         page = render("boat", read_boat(results, fsn_no), language, pictures=False)
         said = [block.text for block in read_blocks(page, folded=True) if block.said]
         in_terminal = squeeze(to_text(page))

@@ -8,6 +8,7 @@ import pytest
 
 from herijk.cli.main import main
 from tests.architecture.repository import read
+from tests.conftest import in_one_process, records_in_memory
 from tests.warehouse.conftest import edition_archive, published
 
 __all__ = ["edition_archive", "published"]
@@ -31,13 +32,16 @@ def hold_against_form(command, printed):
 
 @pytest.fixture
 def herijk(monkeypatch, capsys):
-    """Runs the command in this process; gives exit status, stdout and stderr."""
+    """Runs the command in this process; gives exit status, stdout and stderr.
+
+    A rebuild works in a thread and keeps its records in memory, which takes a second, not five.
+    """
 
     def run(*arguments):
         monkeypatch.setattr(sys, "argv", ["herijk", *map(str, arguments)])
         monkeypatch.setattr(sys.modules["__main__"], "__package__", "")  # not `python -m pytest`
         capsys.readouterr()
-        with pytest.raises(SystemExit) as stopped:
+        with in_one_process(), records_in_memory(), pytest.raises(SystemExit) as stopped:
             main()
         printed = capsys.readouterr()
         assert "Traceback" not in printed.err

@@ -60,8 +60,10 @@ def test_of_a_proposal(fails, tmp_path):
     assert not out.exists()
 
 
-def test_of_pages(fails, tmp_path):
+def test_of_pages_in_an_empty_folder(fails, tmp_path):
+    (tmp_path / "pages").mkdir()
     command = ("pages", "--out", tmp_path / "pages")
     fails("page-boats.html", site, "render_page", lambda path, *_: path == "boats.html", *command)
     assert not (tmp_path / "pages" / "boats.html").exists()
     assert (tmp_path / "pages" / "register.html").exists()
+    assert (tmp_path / "pages" / "index.html").exists()

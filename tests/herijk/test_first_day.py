@@ -107,12 +107,6 @@ def test_a_document_goes_into_a_folder_under_its_usual_name(
     assert str(folder / usual) in out
 
 
-def test_pages_go_into_an_empty_folder(herijk, built, tmp_path):
-    status, _, err = herijk("export", "pages", "--data", built.data, "--out", tmp_path)
-    assert (status, err) == (0, "")
-    assert (tmp_path / "index.html").is_file()
-
-
 # Names of boats and types
 
 BOATS = pl.DataFrame(

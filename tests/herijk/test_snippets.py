@@ -13,7 +13,6 @@ from assets.settings import Settings
 from herijk.cli.main import app
 from pipeline.messages import LANGUAGES, speaker
 from tests.architecture.repository import ROOT, read
-from tests.conftest import in_one_process
 from tests.texts import said as texts_said
 from warehouse.archive.profile import parse_profiles
 
@@ -87,11 +86,10 @@ def type_in(herijk):
 
     def run(page):
         printed = []
-        with in_one_process():
-            for words in herijk_lines(page):
-                status, out, err = herijk(*words)
-                assert status == 0 or (words[0], status) == ("check", 1), (words, err)
-                printed.append(out)
+        for words in herijk_lines(page):
+            status, out, err = herijk(*words)
+            assert status == 0 or (words[0], status) == ("check", 1), (words, err)
+            printed.append(out)
         return " ".join(" ".join(printed).split())
 
     return run
@@ -132,8 +130,9 @@ QUERIES = [
 
 
 @pytest.mark.parametrize("query", QUERIES)
-def test_a_query_finds_what_the_comments_above_it_promise(query, reader):
+def test_a_query_finds_what_the_comments_above_it_promise(query, demo, monkeypatch):
     """Each finds something in every column."""
+    monkeypatch.chdir(demo)
     with duckdb.connect("data/warehouse.duckdb", read_only=True) as db:
         found = db.sql(query).pl()
     assert found.height > 0

@@ -42,8 +42,7 @@ def repeated(world: Measured, season: int) -> str:
     return str(tows.sort("tow_id")["tow_id"][0])
 
 
-@pytest.mark.parametrize("ratio", [0.5, 1.4, 4.4482])
-@pytest.mark.parametrize("season", [2010, 2015])
+@pytest.mark.parametrize(("season", "ratio"), [(2010, 0.5), (2010, 4.4482), (2015, 1.4)])
 def test_the_best_estimate_of_a_doubted_tow_is_that_of_the_boats_other_tows(world, season, ratio):
     tow = repeated(world, season)
     row = curves(doubt(world, [tow], ratio)).row(by_predicate=pl.col("tow_id") == tow, named=True)

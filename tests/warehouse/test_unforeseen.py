@@ -78,14 +78,13 @@ def tiny(tmp_path_factory):
     [
         ("warehouse.archive.plausibility", "_check_whole_tow"),
         ("pipeline.season_log.estimate", "estimate_season_factors"),
-        ("pipeline.assessment.assess", "assess"),
     ],
 )
 def test_a_failing_tow_is_set_aside_and_the_rest_goes_on(module, name, tiny, tmp_path):
     bench = Workbench(tiny.archive, tmp_path / "data")
     called = []
     with failing(module, name, called):
-        report = bench.rebuild((*METHODS, "rebased"))
+        report = bench.rebuild((METHODS[0], "rebased"))
     assert called
     faults = bench.table("quarantine")
     assert faults["tow_id"].to_list() == [TOW]
@@ -124,6 +123,7 @@ def test_a_tow_is_tried_again_when_its_row_changes(tiny, tmp_path):
     write_simulated_archive(bench.archive, simulate_world(TINY))
     with failing("pipeline.assessment.assess", "assess", []):
         bench.rebuild()
+    assert bench.table("quarantine")["tow_id"].to_list() == [TOW]
     assert TOW not in bench.table("tows")["tow_id"]
     bench.rebuild()
     assert TOW not in bench.table("tows")["tow_id"]  # by the same code it would fail again

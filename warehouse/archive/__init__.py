@@ -7,7 +7,7 @@ described in `docs/archive.md`.
 
 from warehouse.archive.faults import Failure, Fault, fault_from
 from warehouse.archive.files import FileHashes
-from warehouse.archive.index import ArchiveIndex, index_archive
+from warehouse.archive.index import ArchiveIndex, index_archive, list_archive_files
 from warehouse.archive.list_rules import read_published_registers, read_races
 from warehouse.archive.plausibility import judge_samples
 from warehouse.archive.profile import Profiles, SeasonProfile
@@ -23,6 +23,7 @@ __all__ = [
     "fault_from",
     "index_archive",
     "judge_samples",
+    "list_archive_files",
     "read_published_registers",
     "read_races",
     "read_tow_samples",

@@ -87,7 +87,7 @@ def check_archive(root: Path, language: str = "en") -> CheckReport:
     """
     profiles = read_profiles(root)
     index = index_archive(root, _hash_ends, profiles)
-    faults = [*index.faults]
+    faults = list(index.faults)
     for _, found in (read_races(root, profiles), read_published_registers(root, profiles)):
         faults += found
     of_headers = list(_faults_in_headers(root, index))
@@ -101,8 +101,11 @@ def check_archive(root: Path, language: str = "en") -> CheckReport:
 
 def _name_tow(tow: Row) -> set[str]:
     """Return the id and the files of a tow."""
-    paths = [path for path in (tow["samples_path"], tow["second_path"]) if path]
-    return {tow["tow_id"], *(part for path in paths for part in path.split(PARTS))}
+    names = {tow["tow_id"]}
+    for path in (tow["samples_path"], tow["second_path"]):
+        if path:
+            names.update(path.split(PARTS))
+    return names
 
 
 def _hash_ends(path: Path) -> str:
@@ -117,12 +120,10 @@ def _hash_ends(path: Path) -> str:
 def _faults_in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
     """Read the header of every samples file that a list names."""
     not_listed = {f.path for f in index.faults if f.reason_code == "samples_not_listed"}
-    of_one_run = {
-        part
-        for name, numbers in (("samples_path", "samples_runs"), ("second_path", "second_runs"))
-        for path in index.tows.filter(pl.col(numbers).is_not_null())[name]
-        for part in path.split(PARTS)
-    }
+    of_one_run: set[str] = set()
+    for name, numbers in (("samples_path", "samples_runs"), ("second_path", "second_runs")):
+        for path in index.tows.filter(pl.col(numbers).is_not_null())[name]:
+            of_one_run.update(path.split(PARTS))
     for file in list_files(root):
         if file.kind != SAMPLES or not file.inside or file.path in not_listed:
             continue
@@ -146,7 +147,7 @@ def _faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iter
             profile = index.profiles.find(tow["season"])
             samples, place, defects = read_tow_samples(root, tow, profile)
             planned = index.runs.filter(tow_id=tow["tow_id"])["run"]
-            if not {*samples["run"].unique()} <= {*planned}:
+            if not set(samples["run"].unique()) <= set(planned):
                 yield _unplanned_fault(tow, samples, planned)
             yield from judge_samples(samples, place, tow, index.runs, defects).faults
         except BaseException as error:
@@ -191,7 +192,7 @@ def _report_cause(faults: list[Fault], names_of: dict[str, set[str]], language: 
         remedy=spoken(REMEDIES[faults[0].reason_code], language),
         cells=[str(cell) for cell in cells if cell is not None],
         places=[Place(f.path, f.line, f.tow_id) for f in faults[:SHOWN]],
-        ask=[*dict.fromkeys(line for fault in faults for line in fault.ask)],
+        ask=list(dict.fromkeys(line for fault in faults for line in fault.ask)),
     )
 
 

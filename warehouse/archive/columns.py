@@ -224,7 +224,7 @@ def split_header(cell: str) -> tuple[str, str | None]:
 
 
 def find_header(lines: Sequence[str], columns: Iterable[Column]) -> tuple[int, str]:
-    """Which of the first lines is the header, the one that names most columns; its delimiter."""
+    """Find the header, the line that names most columns, and its delimiter."""
     wanted = tuple(columns)
     best = 0, 0, ";"
     for place, line in enumerate(lines[:HEADER_WITHIN]):
@@ -237,9 +237,18 @@ def find_header(lines: Sequence[str], columns: Iterable[Column]) -> tuple[int, s
     return -best[1], best[2]
 
 
+def fold_names(columns: Iterable[Column]) -> set[str]:
+    """Return all names that columns go by, folded."""
+    names = set()
+    for column in columns:
+        names.add(fold(column.header))
+        names.update(map(fold, column.also))
+    return names
+
+
 def count_names(header: Iterable[str], columns: Iterable[Column]) -> int:
-    """How many cells of a row are names of columns."""
-    names = {fold(name) for column in columns for name in (column.header, *column.also)}
+    """Return how many cells of a row are names of columns."""
+    names = fold_names(columns)
     return len({split_header(cell.strip('"'))[0] for cell in header} & names)
 
 
@@ -272,7 +281,7 @@ def find_columns(
     """
     by_name: dict[str, list[Column]] = {}
     for column in columns:
-        for name in {fold(name) for name in (column.header, *column.also)}:
+        for name in fold_names([column]):
             by_name.setdefault(name, []).append(column)
     found: dict[str, FoundColumn] = {}
     problems: list[_Problem] = []
@@ -331,7 +340,7 @@ def _explain_column(
     free: Sequence[Column],
     found: Mapping[str, FoundColumn],
 ) -> _Problem:
-    """Return what is wrong with a cell that stands for no column, a taken one, or several."""
+    """Return the fault of a cell that stands for no column, a taken one, or several."""
     known = ", ".join(f"[{unit}]" for c in free or namesakes for unit in UNITS[c.dimension])
     keys = [f"units.{column.key}" for column in free or namesakes]
     if not fitting:

@@ -86,7 +86,7 @@ class DefectiveFileError(DefectiveHeaderError):
 
 
 def fault_frame(faults: Iterable[Fault]) -> dy.DataFrame[Faults]:
-    """Faults as they are stored."""
+    """Return faults as the table that is stored."""
     return frame_of(Faults, [fault.to_row() for fault in faults])
 
 

@@ -77,15 +77,8 @@ def index_archive(
     Raises:
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
-    if not root.is_dir():
-        raise MissingKnowledgeError(
-            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
-            "meetdata_<jaar>/.",
-            *(root, BOATS_FILE),
-        )
+    files = list_archive_files(root)
     profiles = profiles or read_profiles(root)
-    files = list_files(root)
-    _check_lists_are_there(root, files)
     hashes, unread = hash_files(files, hash_file)
     boats = read_boats(files, profiles)
     rows = read_lists(files, TOWS, profiles)
@@ -121,20 +114,33 @@ def index_archive(
     )
 
 
-def _check_lists_are_there(root: Path, files: Iterable[ArchiveFile]) -> None:
-    """Raise `MissingKnowledgeError` where there is no boat list or no tow list."""
+def list_archive_files(root: Path) -> list[ArchiveFile]:
+    """Return the files of an archive, which has at least a list of boats and one of tows.
+
+    Raises:
+        MissingKnowledgeError: there is no archive, or one of these lists is missing.
+    """
+    if not root.is_dir():
+        raise MissingKnowledgeError(
+            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
+            "meetdata_<jaar>/.",
+            root,
+            BOATS_FILE,
+        )
+    files = list_files(root)
     kinds = [file.kind for file in files]
-    said = None
+    missing = None
     if BOATS not in kinds:
-        said = say("there is no list of boats: {path} is expected.", path=BOATS_FILE)
+        missing = say("there is no list of boats: {path} is expected.", path=BOATS_FILE)
     elif TOWS not in kinds:
-        said = say("there is no list of tows: {path} is expected.", path=TOWS_FILE)
-    if said is not None:
-        raise MissingKnowledgeError("The archive at {} cannot be read: {}", root, said)
+        missing = say("there is no list of tows: {path} is expected.", path=TOWS_FILE)
+    if missing is not None:
+        raise MissingKnowledgeError("The archive at {} cannot be read: {}", root, missing)
+    return files
 
 
 def _find_unread_files(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:
-    """Return what lies in the archive and is not read."""
+    """Return a fault for each file of the archive that is not read."""
     text = say(
         "'{path}' is not read: it has another name than the archive's files. Rename it, or put it "
         "under ignore in archief.toml."
@@ -155,27 +161,31 @@ def _find_unlisted_samples(
     """Return the samples that no row names, in seasons whose list could be read."""
     unread_seasons = {file.season for file in files if file.path in unread_lists}
     named = set()
-    for tow_id, season, *cells in listed.select(
-        "tow_id", "season", "file", "second_file"
-    ).iter_rows():
+    names = listed.select("tow_id", "season", "file", "second_file")
+    for tow_id, season, first, second in names.iter_rows():
         plan, profile = profiles.find_plan(tow_id or "", season), profiles.find(season)
-        for cell in filter(None, cells):
-            named |= {fold_file_name(cell), *name_run_files(cell, profile, plan).values()}
+        for cell in (first, second):
+            if cell:
+                named.add(fold_file_name(cell))
+                named.update(name_run_files(cell, profile, plan).values())
     message = say("No row of a tow list names this file.")
-    return [
-        Fault(file.path, None, None, "samples_not_listed", message)
-        if file.inside
-        else fault_from(outside_archive_error(file.path), file.path)
-        for file in files
-        if file.kind == SAMPLES
-        and fold_file_name(file.full_path.name) not in named
-        and file.season not in unread_seasons
-    ]
+    faults = []
+    for file in files:
+        is_named = fold_file_name(file.full_path.name) in named
+        if file.kind != SAMPLES or is_named or file.season in unread_seasons:
+            continue
+        if file.inside:
+            faults.append(Fault(file.path, None, None, "samples_not_listed", message))
+        else:
+            faults.append(fault_from(outside_archive_error(file.path), file.path))
+    return faults
 
 
 def _find_idle_settings(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]:
-    """Return what `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
-    days, seasons, tows = (set(listed[key]) for key in ("tow_date", "season", "tow_id"))
+    """Return a fault for each day, season or tow of `archief.toml` that no list has."""
+    days = set(listed["tow_date"])
+    seasons = set(listed["season"])
+    tows = set(listed["tow_id"])
 
     def has_none(first: int, last: int) -> bool:
         return not any(first <= season <= last for season in seasons)

@@ -82,7 +82,7 @@ class Run:
         return self.medians[channel], np.fmin.reduce(values), np.fmax.reduce(values)
 
     def changes_hz(self, channel: str) -> float:
-        """How many times a second a channel changes."""
+        """Return how many times a second a channel changes."""
         values = self.channels[channel]
         return float(np.count_nonzero(values[1:] != values[:-1])) * self.rate_hz / len(values)
 
@@ -124,7 +124,7 @@ class Judgement:
         row: int = 0,
         lost_s: float | None = None,
     ) -> None:
-        """Something of a run, from one of its rows on; of a run that is lost no less is told."""
+        """Add a fault that costs seconds of a run or the run; a lost run keeps no lesser fault."""
         message = say("{}: {what}; {then}.", run.name, what=what, then=_THEN[cost])
         if cost == "run":
             self.runs = [other for other in self.runs if other is not run]
@@ -134,7 +134,7 @@ class Judgement:
         self._add(run.start + row, reason_code, message, lost, run.number, seconds)
 
     def lose_of_all(self, reason_code: str, message: Sentence, *channels: str) -> None:
-        """Channels of all runs; a fault without a channel costs nothing."""
+        """Add a fault that costs some channels of all runs; without a channel it costs nothing."""
         seconds = sum(run.seconds for run in self.runs) if channels else 0.0
         self._add(self.runs[0].start, reason_code, message, "seconds", None, seconds)
         for run in self.runs:
@@ -178,5 +178,5 @@ def find_stretches(changes: BoolArray) -> tuple[NDArray[np.intp], NDArray[np.int
 
 
 def describe_value(value: float) -> Sentence:
-    """Return what a sentence says of a value."""
+    """Return a value as a sentence writes it."""
     return say("holds {:.6g}", value) if np.isfinite(value) else say("holds no ordinary number")

@@ -43,7 +43,7 @@ class ListKind:
     spare: frozenset[str] = frozenset()
 
     def header(self, key: str) -> str:
-        """Return what the header calls a column, with its unit."""
+        """Return the header of a column with its unit."""
         return next(column.named for column in self.columns if column.key == key)
 
 
@@ -120,11 +120,11 @@ TOWS: Final = ListKind(
     spare=frozenset(
         {
             *(size.key for size in _SIZES),
-            *("weight_after_kg", "crew_weight_kg", "water_temperature_c"),
-            *("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m"),
+            "weight_after_kg", "crew_weight_kg", "water_temperature_c",
+            "freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m",
         }
     ),
-)
+)  # fmt: skip
 WINDOWS: Final = ListKind(
     "sleeplijsten",
     "vensters_([0-9]{4})",

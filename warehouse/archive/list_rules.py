@@ -34,8 +34,8 @@ from warehouse.archive.rows import Rows, cell
 from warehouse.archive.samples import write_windows_text
 
 OF_THE_BOAT: Final = (
-    *("ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
-)
+    "ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m", "weight_kg",
+)  # fmt: skip
 """What a boat has once; it may have had several names, and be rowed by several crews."""
 NO_TYPE: Final = ("overig", "overige", "diversen", "eenling")
 """Types that say that a boat is of none: those named so are not alike."""
@@ -94,7 +94,7 @@ def read_boats(files: Iterable[ArchiveFile], profiles: Profiles) -> Boats:
         }
         rows.drop(one != first, text, "duplicate_boat", **facts)
     is_no_type = pl.col("boat_type").str.to_lowercase().is_in(NO_TYPE)
-    sound = rows.frame.filter(~pl.col("fsn_no").is_in([*rows.lost])).with_columns(
+    sound = rows.frame.filter(~pl.col("fsn_no").is_in(list(rows.lost))).with_columns(
         boat_type=pl.when(~is_no_type).then("boat_type")
     )
     crews = ("rowers", "crew_class")
@@ -259,7 +259,7 @@ def read_force_checks(files: Iterable[ArchiveFile], profiles: Profiles) -> _Read
 
 
 def read_lamps(files: Iterable[ArchiveFile], profiles: Profiles, tow_ids: pl.Series) -> _Read:
-    """How long a lamp burned in that run of each tow in which it burned longest: `burned_s`."""
+    """Read how long a lamp burned (`burned_s`) in the run of each tow where it burned longest."""
     rows = read_lists(files, LAMPS, profiles)
     rows.drop_copies()
     text, tow = say("sleep_id {tow} is not in the tow list of that year."), pl.col("tow_id")
@@ -357,6 +357,6 @@ def _check_registers(rows: Rows) -> None:
 
 
 def _half_unit(key: str) -> pl.Expr:
-    """Half a unit of the last digit that is printed."""
+    """Return half a unit of the last digit that is printed."""
     decimals = cell(key).str.extract(r"[.,]([0-9]+)").str.len_chars().fill_null(0)
     return 0.5 / pl.lit(10.0).pow(decimals.cast(pl.Int32))

@@ -215,11 +215,14 @@ def _keep_filled_rows(
     rows: Iterable[tuple[int, Sequence[str], bool]],
 ) -> list[tuple[int, Sequence[str], bool]]:
     """Return the rows that hold something, without remarks behind a `#`."""
-    return [row for row in rows if "".join(row[1]).strip() and not _is_remark(row[1][0].strip())]
-
-
-def _is_remark(cell: str) -> bool:
-    return cell.startswith("#") and not re.match(_SPREADSHEET_ERROR, cell[:20])
+    filled = []
+    for row in rows:
+        _, cells, _ = row
+        first = cells[0].strip() if cells else ""
+        is_remark = first.startswith("#") and not re.match(_SPREADSHEET_ERROR, first[:20])
+        if "".join(cells).strip() and not is_remark:
+            filled.append(row)
+    return filled
 
 
 # From a table of text to typed rows
@@ -305,7 +308,11 @@ def _parse_rows(
     """
     keys = [column.key for column in kind.columns]
     frame = _collect_cells(table, places, words, kind)
-    needed = [column.key for column in kind.columns if _is_needed(kind, column)]
+    needed = []
+    for column in kind.columns:
+        declared = find_declared_column(kind, column.key)
+        if column.required and (declared is None or not declared.nullable):
+            needed.append(column.key)
     shown = pl.col(needed).replace({MERGED: None})
     is_fragment = pl.sum_horizontal(shown.is_null()) * 2 > len(needed)
     about = _parse_cell(kind, kind.about, places) if kind.about else pl.lit(None, pl.String)
@@ -357,12 +364,6 @@ def _parse_rows(
     return rows
 
 
-def _is_needed(kind: ListKind, column: Column) -> bool:
-    """Return whether every row must have a cell of this column."""
-    declared = find_declared_column(kind, column.key)
-    return column.required and (declared is None or not declared.nullable)
-
-
 def _is_number(kind: ListKind, key: str) -> bool:
     """Return whether the cells of a column are numbers."""
     declared = find_declared_column(kind, key)
@@ -372,7 +373,7 @@ def _is_number(kind: ListKind, key: str) -> bool:
 def _collect_cells(
     table: Table, places: Mapping[str, FoundColumn], words: Mapping[str, str], kind: ListKind
 ) -> pl.DataFrame:
-    """Return what is written in each column, trimmed and in words that are known.
+    """Return the text of each column, trimmed and in known words.
 
     An empty cell is null. With the `line` of each row, whether a quotation mark in it `is_open`,
     the header of a cell that is `too_long`, and how many `fields` it has, blank ones behind the
@@ -485,7 +486,7 @@ def _list_checks(
     mark: str,
     is_text: bool,
 ) -> list[Check]:
-    """Return what can be wrong with the cells of a column."""
+    """Return the checks of the cells of a column, in order."""
     text, value = pl.col(column.key), pl.col(_VALUE.format(column.key))
     declared = find_declared_column(kind, column.key)
     place = places.get(column.key, FoundColumn(-1, column.header, Scale()))
@@ -562,7 +563,7 @@ ASKED_WORDS: Final = (_NO_CLASS, _NO_YES, _NO_TIME)
 
 
 def _describe_wrong_cell(key: str, dtype: pl.DataType) -> Sentence:
-    """Return what is said of a cell that is not of its column's type."""
+    """Return the sentence about a cell that is not of its column's type."""
     number = say("column '{column}' is '{cell}', which is not an ordinary number.")
     whole = say("column '{column}' is {cell}; it must be a whole number.")
     by_key = {
@@ -598,12 +599,12 @@ def _parse_cell(kind: ListKind, key: str, places: Mapping[str, FoundColumn]) -> 
 
 
 def _parse_boat(text: pl.Expr) -> pl.Expr:
-    """`FSN 101`, `fsn101` and `101` are FSN101."""
+    """Return the number of a boat: `FSN 101`, `fsn101` and `101` are FSN101."""
     return pl.coalesce("FSN" + text.str.extract(_BOAT).str.to_uppercase(), text)
 
 
 def _parse_tow_id(text: pl.Expr) -> pl.Expr:
-    """2014/17 would be a folder in names of pages and files."""
+    """Return the tow id with `-` for `/`, as 2014/17 would be a folder in names of files."""
     return text.str.replace_all("/", "-", literal=True)
 
 
@@ -620,7 +621,7 @@ def _parse_run(text: pl.Expr) -> pl.Expr:
 
 
 def _parse_rowing_time(text: pl.Expr) -> pl.Expr:
-    """Seconds of `2:10:25`."""
+    """Return the seconds of a rowing time such as `2:10:25`."""
     parts = text.str.extract_groups(_TIME).struct
     hours, minutes, seconds = (parts.field(str(n)).cast(pl.Float64) for n in (1, 2, 3))
     total = hours * 3600 + minutes * 60 + seconds

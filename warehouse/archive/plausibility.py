@@ -94,7 +94,7 @@ def judge_samples(
     runs: pl.DataFrame,
     defects: Mapping[int, RunDefect] | None = None,
 ) -> Judged:
-    """Return what of the selected runs of a tow can be used; other runs stay as they are.
+    """Judge the selected runs of a tow; other runs stay as they are.
 
     Args:
         samples: frame of `SAMPLE_SCHEMA`, as `read_tow_samples` returns it.
@@ -188,7 +188,7 @@ def _check_length(judgement: Judgement) -> None:
 
 
 def _leave_out_copies(judgement: Judgement) -> None:
-    """Of runs with exactly the same samples, the one at its intended speed is what was measured."""
+    """Set aside runs with the samples of another; the one nearest to its intended speed stays."""
 
     def off_target(run: Run) -> tuple[float, int]:
         ratio = run.medians["log1"] / run.intended_m_s
@@ -271,9 +271,8 @@ def _check_held_as_a_fix(judgement: Judgement) -> None:
     for key in ("log1", "log2", "wind_speed"):
         if not all({key, "gps"} <= run.channels.keys() for run in runs):
             continue
-        other_hz, gps_hz = (
-            float(np.median([run.changes_hz(channel) for run in runs])) for channel in (key, "gps")
-        )
+        other_hz = float(np.median([run.changes_hz(key) for run in runs]))
+        gps_hz = float(np.median([run.changes_hz("gps") for run in runs]))
         least, most = HELD_AS_A_FIX_HZ
         if gps_hz > MOVES_AS_A_LOG_HZ and least < other_hz < most:
             text = say(
@@ -291,7 +290,8 @@ def _check_against_plan(judgement: Judgement) -> None:
     for key, wind, power, most in FOLLOWS_PLAN:
         if not all({key, wind} <= run.channels.keys() for run in judgement.runs):
             continue
-        own, other = (_measure_spread(judgement.runs, name, power) for name in (key, wind))
+        own = _measure_spread(judgement.runs, key, power)
+        other = _measure_spread(judgement.runs, wind, power)
         if own > EXCHANGED_SPREAD_RATIO * most and other < most:
             text = say(
                 "Columns '{}' and '{}' seem to be exchanged: from run to run the second follows "
@@ -339,7 +339,7 @@ def _find_implausible(typical: Mapping[str, Array], intended_m_s: float) -> set[
 
 
 def _estimate_resistance_kg_m(runs: list[Run]) -> float:
-    """Force / speed squared of a typical run, which a fault over most of one does not move."""
+    """Return the median over runs of force / speed squared, which one faulty run does not move."""
     each = [run.medians["force"] / run.intended_m_s**2 for run in runs]
     return abs(float(np.nanmedian(each))) if np.isfinite(each).any() else np.nan
 
@@ -431,7 +431,7 @@ def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
 
 
 def _wrong_force(run: Run, values: Array, usual_n: float) -> BoolArray:
-    low, high = (ratio * usual_n for ratio in FORCE_SPIKE_RATIO)
+    low, high = FORCE_SPIKE_RATIO[0] * usual_n, FORCE_SPIKE_RATIO[1] * usual_n
     wrong = _outside(values, low, high)
     near_zero = FORCE_DEAD_RATIO * usual_n
     if (np.abs(values) <= near_zero).any():
@@ -475,7 +475,7 @@ Found = tuple[float, int]
 
 
 def mean(run: Run, channel: str) -> Found:
-    """Of the samples that are numbers."""
+    """Return the mean of the samples that are numbers."""
     return float(np.nanmean(run.channels[channel], dtype=np.float64)), 0
 
 
@@ -577,14 +577,13 @@ def leave_out_stuck_gps(judgement: Judgement) -> None:
         gps = run.channels.get("gps")
         if gps is not None and (gps == gps[0]).all():
             alike.setdefault(float(gps[0]), []).append(run)
-    for run in [run for held in alike.values() if _speed_differs(held) for run in held]:
-        gps = run.channels["gps"]
-        what = say("gps holds {:.6g} throughout, at other speeds too", gps[0])
-        judgement.lose(run, "stuck_channel", what, "column")
-        run.channels["gps"] = np.full_like(gps, np.nan)
-
-
-def _speed_differs(runs: list[Run]) -> bool:
-    seconds = [run.second_means(run.channels["log1"]) for run in runs]
-    moved_m_s = max(np.nanmax(means) - np.nanmin(means) for means in seconds)
-    return len({run.intended_m_s for run in runs}) > 1 or bool(moved_m_s > GPS_MUST_MOVE_M_S)
+    for held, runs in alike.items():
+        speeds = [run.second_means(run.channels["log1"]) for run in runs]
+        moved_m_s = max(np.nanmax(means) - np.nanmin(means) for means in speeds)
+        n_intended = len({run.intended_m_s for run in runs})
+        if n_intended == 1 and not moved_m_s > GPS_MUST_MOVE_M_S:
+            continue
+        for run in runs:
+            what = say("gps holds {:.6g} throughout, at other speeds too", held)
+            judgement.lose(run, "stuck_channel", what, "column")
+            run.channels["gps"] = np.full_like(run.channels["gps"], np.nan)

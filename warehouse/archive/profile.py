@@ -117,7 +117,7 @@ def _parse_season_range(value: object) -> object:
 
 def _parse_directions(value: object) -> object:
     """Read `["out", "back"]` as `OUT` and `BACK`."""
-    if not isinstance(value, list) or not {*map(str, value)} <= {*_WAYS}:
+    if not isinstance(value, list) or not set(map(str, value)) <= set(_WAYS):
         raise ValueError('directions are a list of "out" and "back"')
     return [_WAYS[way] for way in value]
 
@@ -191,7 +191,7 @@ class _ProfileTable(_Strict):
                     raise ValueError(f"season {season} has two values for {name}.{twice[0]}")
                 values[name] = mine | theirs
             elif isinstance(mine, list) and name != "groups":
-                values[name] = [*dict.fromkeys([*mine, *theirs])]
+                values[name] = list(dict.fromkeys([*mine, *theirs]))
             elif mine != theirs:
                 raise ValueError(f"season {season} has two values for {name}")
         return _ProfileTable.model_construct(**values)
@@ -347,11 +347,11 @@ class Profiles(_Strict):
         return next(own, None) or next(of_season, STANDARD)
 
     def find_reason_set_aside(self, day: dt.date) -> str | None:
-        """Why a day is set aside, None when it is not."""
+        """Return why a day is set aside; None if it is not."""
         return next((entry.reason for entry in self.set_aside if entry.date == day), None)
 
     def count_log_changes(self, log: str, day: dt.date) -> int:
-        """How often a log had been replaced since its season began: 0 with the first."""
+        """Return how often a log had been replaced in its season up to a day."""
         replaced = (entry.date for entry in self.log_replaced if entry.log == log)
         return sum(dt.date(day.year, 1, 1) <= date <= day for date in replaced)
 

@@ -83,29 +83,39 @@ class Rows:
             ask: lines of `archief.toml` that would settle it, in which facts are filled in.
             facts: what is filled in: a value, or an expression of the rows.
         """
+        if self.frame.filter(is_wrong).is_empty():
+            return 0
         of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
         place_columns = ("path", "sheet", "line", "about")
         known = self.frame.lazy().select(*place_columns, _wrong=is_wrong, **of_rows)
         wrong_rows = known.filter("_wrong").collect()
         for row in wrong_rows.iter_rows(named=True):
             filled = {name[1:]: row[name] for name in of_rows}
-            short = {
-                name: shorten(value) if isinstance(value, str) and name != "other" else value
-                for name, value in filled.items()
-            }
-            what = say(text, **facts | short)
+            shown = dict(facts)
+            for name, value in filled.items():
+                is_cell = isinstance(value, str) and name != "other"
+                shown[name] = shorten(value) if is_cell else value
+            what = say(text, **shown)
             if row["sheet"]:
                 what = say("sheet '{sheet}': {what}", sheet=row["sheet"], what=what)
             message = say_at_line(row["line"], what)
             if lost == "cell":
                 message = say("{what} The cell counts as empty.", what=message)
             tow_id = row["about"] if self.kind.about == "tow_id" else None
-            place = row["path"], tow_id, row["line"]
             lines = [line.format(**filled) for line in ask]
             if asks_word:
-                lines.append(_ask_word(filled["cell"]))
+                word = filled["cell"].replace("\\", "\\\\").replace('"', '\\"')
+                lines.append(f'[words]\n"{word}" = "?"')
             code = code or self.kind.reason_code
-            fault = Fault(*place, code, message, lost, ask=tuple(lines))
+            fault = Fault(
+                path=row["path"],
+                tow_id=tow_id,
+                line=row["line"],
+                reason_code=code,
+                message=message,
+                lost=lost,
+                ask=tuple(lines),
+            )
             self.faults.append(fault)
             if row["about"]:
                 self.lost.setdefault(row["about"], fault)
@@ -173,14 +183,8 @@ class Rows:
         return table.validate(self.frame.select(table.column_names()), cast=True)
 
 
-def _ask_word(word: str) -> str:
-    """Return the line of `archief.toml` that says what a word means."""
-    quoted = word.replace("\\", "\\\\").replace('"', '\\"')
-    return f'[words]\n"{quoted}" = "?"'
-
-
 def cell(key: str) -> pl.Expr:
-    """Return what is written in a column, null for nothing."""
+    """Return the text of a column as it is written; null for nothing."""
     return pl.col("cells").struct.field(key)
 
 

@@ -5,6 +5,7 @@
 What the rows are (runs, a recording), and the schema, is the business of `samples`.
 """
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -29,6 +30,7 @@ from warehouse.archive.columns import (
     find_header,
     find_unit,
     fold,
+    fold_names,
     shorten,
     split_header,
     split_line,
@@ -170,7 +172,7 @@ def _find_known(
 
 def _add_other_answers(error: DefectiveHeaderError, profile: SeasonProfile) -> DefectiveHeaderError:
     """Return the error about a header with the answers that are not the name of a column."""
-    said, ask = error.message, [*error.ask]
+    said, ask = error.message, list(error.ask)
     if any(".run = " in line for line in ask):
         text = say(
             '{header} Where no column says which run a row is: runs = "file" if each run has its '
@@ -186,7 +188,7 @@ def _add_other_answers(error: DefectiveHeaderError, profile: SeasonProfile) -> D
 
 def _find_possible_gps(names: Sequence[str], profile: SeasonProfile) -> list[str]:
     """Return the headers that are no known column and have the unit of a speed, or none."""
-    known = {fold(name) for c in profile.columns for name in (c.header, *c.also)}
+    known = fold_names(profile.columns)
     if fold(next(c.header for c in profile.columns if c.key == "gps")) in {
         split_header(name)[0] for name in names
     }:
@@ -233,7 +235,7 @@ def _read_text(path: Path, profile: SeasonProfile) -> SampleTable:
 
 
 def _cut_body(data: bytes, above: int) -> bytes:
-    """Return what is below so many lines, without blank lines at the end."""
+    """Return the text below so many lines, without blank lines at the end."""
     start = 0
     for _ in range(above):
         start = data.find(b"\n", start) + 1
@@ -305,7 +307,8 @@ def _read_cells(body: bytes, header: Header, first_line: int) -> pl.DataFrame:
         if column.scale == CLOCK:
             found[key] = pl.select(pl.when(is_whole).then(cells)).to_series()
             continue
-        commas, points = (cells.str.contains(mark, literal=True).sum() for mark in ",.")
+        commas = cells.str.contains(",", literal=True).sum()
+        points = cells.str.contains(".", literal=True).sum()
         pattern = _NUMBER.replace("M", "," if commas >= points else ".")
         numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
         is_good = cells.str.contains(pattern) & is_whole & numbers.is_finite()
@@ -438,7 +441,8 @@ def _convert_times(
         )
         known = ", ".join(UNITS["time"])
         said = say(text, column=column.header, unit=column.unit, known=known)
-        raise DefectiveHeaderError("bad_time", say_at_line(line, said), line, _ask_time(profile))
+        ask = (profile.ask("units.time"), profile.ask("absent", '["?"]'))
+        raise DefectiveHeaderError("bad_time", say_at_line(line, said), line, ask)
     others = pl.exclude("run", "time")
     return frame.with_columns(
         times.alias("time"), pl.when(is_unread).then(float("nan")).otherwise(others).name.keep()
@@ -458,7 +462,7 @@ def _read_parquet(path: Path, profile: SeasonProfile) -> SampleTable:
         raise _too_large_error(path)
     names = {header.names[column.index]: key for key, column in header.columns.items()}
     try:
-        frame = pl.DataFrame(pl.from_arrow(pq.read_table(path, columns=[*names])))
+        frame = pl.DataFrame(pl.from_arrow(pq.read_table(path, columns=list(names))))
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
         raise _damaged_error(path, "Parquet", error) from error
     numbers = {}
@@ -562,12 +566,12 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
         DefectiveHeaderError: a group that the profile names is not there, or the numbers in the
             names of the groups are in another order than the groups.
     """
-    wanted = {fold(name) for c in profile.columns for name in (c.header, *c.also)}
-    with_channels = [
-        group
-        for group in groups
-        if len({split_header(channel.name)[0] for channel in group.channels()} & wanted) > 1
-    ]
+    wanted = fold_names(profile.columns)
+    with_channels = []
+    for group in groups:
+        names_of_channels = {split_header(channel.name)[0] for channel in group.channels()}
+        if len(names_of_channels & wanted) > 1:
+            with_channels.append(group)
     names = [group.name for group in with_channels]
     if profile.groups:
         missing = [name for name in profile.groups if name not in names]
@@ -586,8 +590,10 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
         return [(None, with_channels[0])]
     if not with_channels:
         return [(1, group) for group in groups[:1]]  # what is missing is told of the first
-    digits = ["".join(c if c.isdigit() else " " for c in name).split() for name in names]
-    numbers = [int(found[-1]) if found else 0 for found in digits]
+    numbers = []
+    for name in names:
+        digits = re.findall(r"[0-9]+", name)
+        numbers.append(int(digits[-1]) if digits else 0)
     if len(names) > MOST_RUNS or numbers != sorted(numbers):
         text = say("The groups are {names}, and it is not clear which run each of them is.")
         said = say(text, names=", ".join(f"'{shorten(name)}'" for name in names))

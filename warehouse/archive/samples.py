@@ -128,8 +128,7 @@ def _about_file(path: str) -> Iterator[None]:
         yield
     except DefectiveInputError as error:
         ask = error.ask if isinstance(error, DefectiveHeaderError) else ()
-        told = error.reason_code, error.message, error.line, path
-        raise DefectiveFileError(*told, ask) from error
+        raise DefectiveFileError(error.reason_code, error.message, error.line, path, ask) from error
 
 
 def read_windows_text(text: str | None) -> Windows:

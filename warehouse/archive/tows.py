@@ -131,7 +131,7 @@ def read_selection(written: str, has_second: bool, plan: Plan) -> frozenset[int]
     if has_second:
         planned |= {f"b{run}": SECOND_FILE_OFFSET + run for run in plan.runs}
     runs = [planned.get(part) for part in parts]
-    is_good = None not in runs and len({*runs}) == len(runs)
+    is_good = None not in runs and len(set(runs)) == len(runs)
     return frozenset(run for run in runs if run) if is_good else frozenset()
 
 
@@ -197,7 +197,7 @@ def _add_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl.
                 "runs": ",".join(map(str, parts)),
             }
     entries = known | together
-    return pl.DataFrame([*entries.values()], samples.schema, orient="row")
+    return pl.DataFrame(list(entries.values()), samples.schema, orient="row")
 
 
 def _add_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
@@ -331,7 +331,7 @@ def _add_season(rows: Rows, profiles: Profiles) -> None:
 
 
 def _look_up(rows: Rows, key: str, read: Callable[[Any], object], dtype: pl.DataType) -> pl.Expr:
-    """Return what follows from the value of a column, read once for each value."""
+    """Return an expression that looks up each value of a column in a function."""
     found = {value: read(value) for value in rows.frame[key].unique()}
     if not found:
         return pl.lit(None, dtype)
@@ -347,13 +347,13 @@ def _add_instruments(
     after it in the season.
     """
     frame = rows.frame.with_row_index("_row").sort("tow_date")
-    before, after = (
-        frame.join_asof(
-            checks, left_on="tow_date", right_on="day", by="season", strategy=strategy,
-            check_sortedness=False,
-        ).select("load_cell_ratio", "load_cell_sd")
-        for strategy in ("backward", "forward")
-    )  # fmt: skip
+    checked = checks.rename({"day": "tow_date"})
+    before = frame.join_asof(
+        checked, on="tow_date", by="season", strategy="backward", check_sortedness=False
+    )
+    after = frame.join_asof(
+        checked, on="tow_date", by="season", strategy="forward", check_sortedness=False
+    )
     for name in ("load_cell_ratio", "load_cell_sd"):
         frame = frame.with_columns(before[name].fill_null(after[name]))
     frame = frame.sort("_row").join(burned, on="tow_id", how="left", maintain_order="left")

@@ -178,12 +178,11 @@ def _read_sheet(sheet: Any, written: _Written) -> Sheet:
             hidden_lines.append(line)
         else:
             visible.append((line, cells))
-    hidden_columns = {
-        column - 1
-        for shape in sheet.column_dimensions.values()
-        if shape.hidden or shape.width == 0
-        for column in range(shape.min or 1, min(shape.max or 1, written.columns) + 1)
-    }
+    hidden_columns: set[int] = set()
+    for shape in sheet.column_dimensions.values():
+        if shape.hidden or shape.width == 0:
+            first, last = shape.min or 1, min(shape.max or 1, written.columns)
+            hidden_columns.update(range(first - 1, last))
     return Sheet(sheet.title, visible, hidden_lines, frozenset(hidden_columns))
 
 
@@ -209,7 +208,7 @@ def _reaches_too_far(title: str) -> Sentence:
 
 
 def _cell_text(cell: Any, formula: str | None) -> str:
-    """Return what a person sees in a cell, or its formula where that was never calculated."""
+    """Return a cell as a person sees it, or its formula where that was never calculated."""
     value = cell.value
     if value is None:
         is_calculated = cell.data_type == "str"  # a formula whose result is an empty text

@@ -39,7 +39,7 @@ def archive_tables(
     has_earlier_tows: bool,
     today: dt.date,
 ) -> dict[str, pl.DataFrame]:
-    """Boats, sound tows with their runs and windows, and everything that was set aside.
+    """Return boats, sound tows with their runs and windows, and everything that was set aside.
 
     Raises:
         NoTowsYetError: no tow is listed or has samples, and no earlier rebuild had a tow: the
@@ -48,7 +48,7 @@ def archive_tables(
             some. A disk that is not mounted must not empty the register.
     """
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
-    contents = blocks.select("tow_id", "run", "second", *CONTENT)
+    contents = blocks.select("tow_id", "run", "second", pl.col(CONTENT))
     contents = contents.join(sound, on="tow_id", how="semi", maintain_order="left")
     present = contents.group_by("tow_id", "run", maintain_order=True).agg(
         seconds=pl.col("second").max() + 1
@@ -58,7 +58,8 @@ def archive_tables(
     tows, contradicted = judge_tows(
         add_boat_types(listed, listed_boats), stack_blocks(blocks, runs_read), contents
     )
-    sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
+    sound = sound.join(tows, on="tow_id", how="semi")
+    runs = runs_read.join(tows, on="tow_id", how="semi")
     windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
     beyond = fault_frame(find_windows_outside_run(windows, present))
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
@@ -149,7 +150,7 @@ def _add_reading_steps(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
 
 
 def _lost_of_tows(losses: pl.DataFrame) -> pl.DataFrame:
-    """Per tow how many of the runs to be used are set aside, and the seconds that are left out."""
+    """Return per tow how many runs are set aside, and the seconds that are left out."""
     return losses.group_by("tow_id", maintain_order=True).agg(
         (pl.col("lost") == "run").sum().alias("runs_set_aside"),
         pl.col("lost_s").filter(pl.col("lost") == "seconds").sum(),
@@ -187,7 +188,7 @@ def judge_tows(
 
 
 def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
-    """How many tows each season lists, how many can be used, and what is lost of those."""
+    """Return how many tows each season lists, how many can be used, and what is lost of these."""
     is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
     return (
         listed.join(_lost_of_tows(losses), on="tow_id", how="left", maintain_order="left")
@@ -235,7 +236,7 @@ def _explain_no_tows(set_aside: pl.DataFrame, waits_for_samples: bool) -> str:
 
 
 def add_first_seen(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.DataFrame:
-    """Faults with what each costs and the day on which it was first seen, today for new ones.
+    """Add to each fault its cost and the day on which it was first seen: today for new ones.
 
     A fault that does not say what it costs has cost a tow, a row of a list or a file.
     """

@@ -32,13 +32,13 @@ STORAGE: Final = "v1.0.0"
 
 
 def _meaning(schema: type[dy.Schema]) -> str:
-    """Return what a table is, with its key."""
+    """Return the meaning of a table, with its key."""
     key = ", ".join(schema.primary_key())
     return f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
 
 
 def _column_meanings(schema: type[dy.Schema]) -> dict[str, str]:
-    """Return what the columns of a table mean, each with its unit."""
+    """Return the meaning of the columns of a table, each with its unit."""
     meanings = {}
     for name, column in schema.columns().items():
         unit = (column.metadata or {}).get("unit")
@@ -149,7 +149,7 @@ def _about(about_archive: pl.DataFrame) -> pl.DataFrame:
 
 
 def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
-    """Every table with its rows and meaning, for those who open the database."""
+    """Return every table with its rows and meaning, for those who open the database."""
     names = sorted(set(tables) & set(TABLES))
     return pl.DataFrame(
         {

@@ -49,17 +49,16 @@ def judge(tows: pl.DataFrame, blocks: RunBlocks) -> tuple[Shift, ...]:
 
 def list_gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:
     """Return a fault for each tow that a wrong unit, column or file costs."""
-    sentences = {
-        tow: (f"{_SENSOR[shift.quantity]}_not_plausible", _sentence(shift))
-        for shift in reversed(shifts)
-        if shift.is_gross
-        for tow in shift.tows
-    }
-    faults = [
-        Fault(path, tow, None, *sentences[tow], lost="tow")
-        for path, tow in tows.select("samples_path", "tow_id").iter_rows()
-        if tow in sentences
-    ]
+    gross = {}
+    for shift in reversed(shifts):  # the first shift of a tow is the one that is told
+        if shift.is_gross:
+            gross.update(dict.fromkeys(shift.tows, shift))
+    faults = []
+    for path, tow_id in tows.select("samples_path", "tow_id").iter_rows():
+        if tow_id in gross:
+            shift = gross[tow_id]
+            code = f"{_SENSOR[shift.quantity]}_not_plausible"
+            faults.append(Fault(path, tow_id, None, code, _sentence(shift), lost="tow"))
     return fault_frame(faults)
 
 
@@ -68,10 +67,10 @@ def add_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
 
     def checks(verdict: str, doubted: bool) -> pl.Series:
         shifts = [s for s in judged if (s.clear and s.kind in _SINGLED_OUT) is doubted]
-        codes = [
-            sorted({f"{_SENSOR[s.quantity]}_{verdict}" for s in shifts if tow in s.tows})
-            for tow in tows["tow_id"]
-        ]
+        codes = []
+        for tow_id in tows["tow_id"]:
+            sensors = {_SENSOR[shift.quantity] for shift in shifts if tow_id in shift.tows}
+            codes.append([f"{sensor}_{verdict}" for sensor in sorted(sensors)])
         return pl.Series(codes, dtype=pl.List(pl.String))
 
     return tows.with_columns(

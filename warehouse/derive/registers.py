@@ -59,7 +59,7 @@ def register_tables(
     correction_steps: pl.DataFrame,
     methods: Sequence[Method],
 ) -> dict[str, pl.DataFrame]:
-    """Draft registers, what changes between registers, lineage, and who is due to be towed.
+    """Make draft registers, their changes and lineage, and the list of boats that are due.
 
     The newest tow counts: where it has no samples, a line that the archive has in print is re-based
     and stands in the draft; else the line is flagged. Drafts are compared with the first method's,
@@ -100,7 +100,7 @@ def register_tables(
 def race_changes(
     register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
 ) -> pl.DataFrame:
-    """All races in the archive under both editions of every pair that is compared."""
+    """Replay all races in the archive under both editions of every pair that is compared."""
     pairs = register_changes.select(EDITIONS).unique().sort(EDITIONS)
     replayed = {
         edition: replay.replay(
@@ -118,7 +118,7 @@ def race_changes(
 
 
 def members_of(method: Method, made: Recomputed) -> pl.DataFrame:
-    """Equally likely numbers of every tow: rows of the table `ensemble`."""
+    """Return equally likely numbers of every tow: rows of the table `ensemble`."""
     ruled = apply_rule(made.curves, method.validity)
     return draw_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
 
@@ -126,7 +126,7 @@ def members_of(method: Method, made: Recomputed) -> pl.DataFrame:
 def due_of_lines(
     lines: Mapping[str, pl.DataFrame], boats: pl.DataFrame, races: pl.DataFrame, as_of: dt.date
 ) -> pl.DataFrame:
-    """Rows of `due_list`, of the lines of each method."""
+    """Return rows of `due_list`, of the lines of each method."""
     parts = {method: due.due_list(own, boats, races, as_of) for method, own in lines.items()}
     named = (
         part.select(pl.lit(method).alias("method"), pl.all()) for method, part in parts.items()
@@ -138,7 +138,7 @@ def _draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame
     edition, name = pl.lit(draft_name(method)), pl.lit(method)
     code = pl.lit(None, pl.String).alias("verification_code")
     measured = lines.join(
-        tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left"
+        tows.select("tow_id", pl.col(SIZES)), on="tow_id", how="left", maintain_order="left"
     )
     return measured.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
 
@@ -147,7 +147,7 @@ def _draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame
 
 
 def published_tables(store: Store) -> dict[str, pl.DataFrame]:
-    """Rows of `editions`, and of the register's tables and `lineage` of every edition.
+    """Return rows of `editions`, and of the register's tables and `lineage` of every edition.
 
     Raises:
         BrokenPromiseError: a file of an edition is missing or damaged.
@@ -166,10 +166,11 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
             hashes = {edition.method.name: edition.manifest.method_hash}
             tows, code_version = edition.tables["tows"], edition.manifest.code_version
             rows["lineage"].append(lineage_rows(edition.register, tows, hashes, code_version))
-    return {
-        table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
-        for table, frames in rows.items()
-    }
+    tables = {}
+    for table, frames in rows.items():
+        conforming = [conform(table, frame) for frame in frames]
+        tables[table] = pl.concat([TABLES[table].create_empty(), *conforming])
+    return tables
 
 
 def read_decisions_of_edition(store: Store, edition: Edition) -> pl.DataFrame:
@@ -182,7 +183,7 @@ def read_decisions_of_edition(store: Store, edition: Edition) -> pl.DataFrame:
 
 
 def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
-    """Rows of `register_history` of an edition: before its lines those that its tows gave earlier.
+    """Return rows of `register_history`: the lines of an edition and those they replace.
 
     So a race of before the edition is computed with the tow that counted then.
     """
@@ -203,18 +204,18 @@ def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
 
 
 def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame:
-    """Rows of `register_history`: lines in the order in which one goes before another."""
+    """Return rows of `register_history`, in the order in which one line precedes another."""
     return lines.select(
         pl.lit(edition).alias("edition"),
         pl.lit(method).alias("method"),
-        *LINE,
+        pl.col(LINE),
         pl.int_range(1, pl.len() + 1, dtype=pl.Int32).over(LINE).alias("position"),
-        *CURVE_COLUMNS,
-    ).sort(*LINE, "position")
+        pl.col(CURVE_COLUMNS),
+    ).sort(pl.col(LINE), "position")
 
 
 def _edition_row(edition: Edition) -> pl.DataFrame:
-    """Return what an edition says of itself."""
+    """Return the row of `editions` about an edition."""
     about = edition.manifest.model_dump(include=set(TABLES["editions"].column_names()))
     interval = edition.method and edition.method.interval
     strings = ("previous", "method", "method_hash", "interval")
@@ -224,7 +225,7 @@ def _edition_row(edition: Edition) -> pl.DataFrame:
 def lineage_rows(
     register: pl.DataFrame, tows: pl.DataFrame, hashes: Mapping[str, str | None], code_version: str
 ) -> pl.DataFrame:
-    """Rows of the table `lineage`: one per line that has a tow and samples file of it.
+    """Return rows of the table `lineage`: one per line that has a tow and samples file of it.
 
     Args:
         register: rows of `register`.
@@ -232,7 +233,7 @@ def lineage_rows(
         hashes: content hash of each method.
         code_version: of the code that made the lines.
     """
-    lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
+    lines = register.drop_nulls("tow_id").select("edition", pl.col(LINE), "tow_id", "method")
     return lines.join(samples_files(tows), on="tow_id", maintain_order="left").with_columns(
         method_hash=pl.col("method").replace_strict(hashes, return_dtype=pl.String),
         code_version=pl.lit(code_version),

@@ -40,7 +40,7 @@ def find_same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     """
     if tows.is_empty():
         return Faults.create_empty()
-    facts = tows.select("tow_id", "tow_date", *LINE, "samples_path")
+    facts = tows.select("tow_id", "tow_date", pl.col(LINE), "samples_path")
     runs = (
         blocks.join(facts, on="tow_id", how="semi")
         .group_by("tow_id", "run", maintain_order=True)
@@ -50,11 +50,9 @@ def find_same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         .join(facts, on="tow_id", maintain_order="left")
         .sort("tow_date", "tow_id", "run")
     )
-    faults = [
-        fault
-        for _, same in runs.group_by("content", maintain_order=True)
-        for fault in _faults(same)
-    ]
+    faults: list[Fault] = []
+    for _, same in runs.group_by("content", maintain_order=True):
+        faults += _faults(same)
     rows = fault_frame(faults)
     return rows.unique("tow_id", keep="first", maintain_order=True)
 
@@ -77,7 +75,7 @@ def _add_content(runs: pl.DataFrame) -> pl.DataFrame:
 
 
 def _faults(same: pl.DataFrame) -> Iterator[Fault]:
-    """Faults for one content: of all its tows, or of all but the first."""
+    """Return faults of tows with one content: of all of them, or of all but the first."""
     first = same.row(0, named=True)
     of_one = same.select(LINE).n_unique() == 1
     for row in same.iter_rows(named=True):

@@ -46,8 +46,11 @@ def study_tables(
         judged = option_effects(method, *known, links, run_cache)
         effects.append(judged.with_columns(own, study=pl.lit(JUDGEMENT)))
     if method != first_method:
-        old, new = _order_by_history(first_method, method)
-        before, after = (tow_instruments.filter(method=end.name) for end in (old, new))
+        old, new = first_method, method
+        if method.name == FIRST_PUBLISHED:  # what came first in history begins the ladder
+            old, new = method, first_method
+        before = tow_instruments.filter(method=old.name)
+        after = tow_instruments.filter(method=new.name)
         steps = ladder(old, new, *known, (before, after), run_cache)
         ladders = [steps.with_columns(from_method=pl.lit(old.name), to_method=pl.lit(new.name))]
     return {
@@ -59,8 +62,3 @@ def study_tables(
 
 def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
     return pl.concat(frames, how="diagonal") if frames else schema.create_empty()
-
-
-def _order_by_history(first: Method, other: Method) -> tuple[Method, Method]:
-    """Return the two ends of a ladder: what came first in history is its beginning."""
-    return (other, first) if other.name == FIRST_PUBLISHED else (first, other)

@@ -14,9 +14,8 @@ from typing import Final
 import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
-from pipeline.curve import cw
 from pipeline.method.definition import RUNS_ALONE, Method, find_method_in_force
-from pipeline.races.power import find_line_curves
+from pipeline.races.power import compute_line_cw
 from pipeline.register.changes import (
     NO_FACTOR,
     NO_PARTS,
@@ -79,7 +78,9 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     beside = lines.columns
     for side, edition in (("old", old), ("new", new)):
         facts = edition.register.select(
-            *LINE, pl.col("name").alias(f"{side}_name"), pl.col("status").alias(f"{side}_status")
+            pl.col(LINE),
+            pl.col("name").alias(f"{side}_name"),
+            pl.col("status").alias(f"{side}_status"),
         )
         lines = lines.join(facts, on=LINE, how="left", maintain_order="left")
     name = pl.coalesce("new_name", "old_name").alias("name")
@@ -100,7 +101,7 @@ def _add_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
 
 
 def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
-    """Every step from the old method to the new one, on the new edition's tows still there.
+    """Apply the steps from the old method to the new one, one after another, to the same tows.
 
     From print it begins at the method that was in force when the register was printed.
     """
@@ -119,7 +120,8 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     if start is None:
         return NO_LADDER
     blocks = stack_blocks(intake.all_blocks(store), runs)
-    before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
+    before = old.tables.get("tow_instruments")
+    after = new.tables.get("tow_instruments")
     is_known = after is not None and (before is not None or old.method is None)
     return ladder(start, new.method, tows, blocks, (before, after) if is_known else None)
 
@@ -134,7 +136,7 @@ def _method_in_print(store: Store, printed: Edition) -> Method | None:
 def _explain_printed_lines(
     printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition
 ) -> pl.DataFrame:
-    """Return what is known of printed lines before the steps of the method.
+    """Return the known causes of printed lines before the steps of the method.
 
     With samples: from print to the tow by the method then in force. Without: the log error of its
     season under the new method, in closed form.
@@ -147,18 +149,18 @@ def _explain_printed_lines(
     measured = lines.join(computed, on="tow_id", maintain_order="left").join(
         speeds, on="tow_id", maintain_order="left"
     )
-    at_tow_speed = cw(*find_line_curves(measured), measured["tow_speed"].to_numpy())
+    at_tow_speed = compute_line_cw(measured, measured["tow_speed"].to_numpy())
     reproduction = measured["computed_cw"] / pl.Series(at_tow_speed, dtype=pl.Float64)
 
     unmeasured = lines.join(measured, on=LINE, how="anti").select(lines.columns)
     rebased = rebase_printed(unmeasured, new.tables["log_factors"], new.method)
     unmeasured = unmeasured.join(rebased, on=LINE, how="semi", maintain_order="left")
     speed = unmeasured["declared_speed_m_s"].to_numpy()
-    closed_form = cw(*find_line_curves(rebased), speed) / cw(*find_line_curves(unmeasured), speed)
+    closed_form = compute_line_cw(rebased, speed) / compute_line_cw(unmeasured, speed)
 
     def parts(of: pl.DataFrame, cause: str, factor: pl.Series) -> pl.DataFrame:
         step = pl.lit(None, pl.String).alias("step")
-        named = of.select(*LINE, pl.lit(cause).alias("cause"), step, factor.alias("factor"))
+        named = of.select(pl.col(LINE), pl.lit(cause).alias("cause"), step, factor.alias("factor"))
         return named.filter(pl.col("factor").is_finite())
 
     return pl.concat(
@@ -308,7 +310,8 @@ def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules
     if store.read_fingerprint("listed_races") is None or not store.count_rows("listed_races"):
         return without_races
     results = store.read("listed_races")
-    before, after = (replay(lines_in_time(store, one), results, rules) for one in (old, new))
+    before = replay(lines_in_time(store, old), results, rules)
+    after = replay(lines_in_time(store, new), results, rules)
     members = new.tables.get("ensemble", pl.DataFrame())
     return replace(
         without_races,
@@ -330,11 +333,11 @@ def _summarise(lines: pl.DataFrame) -> Row:
 def parts_of(lines: pl.DataFrame) -> pl.DataFrame:
     """Return the causes of lines, one a row: `LINE`, `cause`, `step` and `factor`."""
     causes = pl.col("causes").str.json_decode(pl.List(CAUSE))
-    return lines.select(*LINE, causes).explode("causes").unnest("causes")
+    return lines.select(pl.col(LINE), causes).explode("causes").unnest("causes")
 
 
 def causes_of(lines: pl.DataFrame) -> list[Row]:
-    """Return what each cause, or step of a method, did; that with the most lines first.
+    """Return the effect of each cause, or step of a method; that with the most lines first.
 
     Returns:
         Rows of `cause`, `step` (where a method is the cause), `lines` (how many it moved), and of
@@ -357,7 +360,7 @@ def causes_of(lines: pl.DataFrame) -> list[Row]:
 
 
 def _rows(lines: pl.DataFrame) -> list[Row]:
-    """Lines as rows, each with the causes that moved it."""
+    """Return lines as rows, each with the causes that moved it."""
     rows = lines.with_columns(pl.col("causes").str.json_decode(pl.List(CAUSE))).to_dicts()
     for row in rows:
         moved = [cause for cause in row["causes"] if abs(cause["factor"] - 1.0) > NO_FACTOR]

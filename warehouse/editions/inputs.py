@@ -18,10 +18,10 @@ JUDGED: Final = ("doubts", "unusual")
 """What all other tows say of a tow."""
 
 NOT_INPUT: Final = (
-    *("samples_path", "second_path", "inputs_sha256"),
+    "samples_path", "second_path", "inputs_sha256",
     *JUDGED,
-    *("hand_reason", "list_path", "list_line"),
-)
+    "hand_reason", "list_path", "list_line",
+)  # fmt: skip
 """What a tow is called or said to be does not change its numbers; its doubts follow from others."""
 
 INPUTS_HASH: Final = "inputs_sha256"
@@ -30,7 +30,7 @@ OLDER_SOURCES: Final = "inputs.csv"
 
 
 def add_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
-    """Tows with the hash of all that their numbers are made from: list row, runs and files."""
+    """Add the hash of all that the numbers of a tow are made from: list row, runs and files."""
     facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
     of_tow = runs.sort("tow_id", "run").select(facts).rows_by_key("tow_id", include_key=True)
     measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
@@ -42,7 +42,7 @@ def add_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
 
 
 def tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
-    """Tables `tows`, with the hash of their inputs, and `tow_runs` of the warehouse as it is."""
+    """Return `tows`, with the hash of their inputs, and `tow_runs` of the warehouse as it is."""
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - all that reads archives
 
     runs = intake.runs_with_windows(store)
@@ -52,19 +52,15 @@ def tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
 def find_same_tows(
     was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]
 ) -> frozenset[str]:
-    """Tows whose inputs are the same in two sets of tables `tows` and `tow_runs`.
+    """Return the tows whose inputs are the same in two sets of `tows` and `tow_runs`.
 
     Compared is what both tables say: a fact that was not recorded earlier is no difference.
     """
-    shared = {
-        name: [column for column in was[name].columns if column in now[name].columns]
-        for name in ("tows", "tow_runs")
-    }
-    one, other = (
-        add_input_hashes(*(edition[name].select(shared[name]) for name in shared))
-        for edition in (was, now)
-    )
-    return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
+    of_tow = [name for name in was["tows"].columns if name in now["tows"].columns]
+    of_run = [name for name in was["tow_runs"].columns if name in now["tow_runs"].columns]
+    before = add_input_hashes(was["tows"].select(of_tow), was["tow_runs"].select(of_run))
+    after = add_input_hashes(now["tows"].select(of_tow), now["tow_runs"].select(of_run))
+    return frozenset(before.join(after, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
 
 
 def list_files(store: Store) -> dict[str, str]:

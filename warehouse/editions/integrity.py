@@ -67,7 +67,7 @@ def check_chain(
     for name in stray_names(store):
         message = say("{} lies among the editions and is none", name)
         yield Finding("", "notice", name, message, wrong=False)
-    for name in sorted(_known_editions(store).keys() - {*edition_names(store)}):
+    for name in sorted(_known_editions(store).keys() - set(edition_names(store))):
         yield Finding(name, "altered", name, say("edition {} was published and is gone", name))
     in_order = sorted(manifests.values(), key=lambda m: (m.number or 0, m.edition))
     chained = [manifest for manifest in in_order if manifest.number is not None]
@@ -93,7 +93,7 @@ def check_chain(
 
 
 def _known_editions(store: Store) -> dict[str, Row]:
-    """Return what the last rebuild noted of each edition, by its name."""
+    """Return the facts that the last rebuild noted of each edition, by its name."""
     if store.read_fingerprint("editions") is None:
         return {}
     return {row["edition"]: row for row in store.read("editions").iter_rows(named=True)}

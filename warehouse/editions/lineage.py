@@ -35,7 +35,7 @@ class Lineage:
 
 
 def lineage(store: Store, edition: str, boat: str) -> Lineage:
-    """Return what the lines of a boat, by number or name, were made from.
+    """Return the sources of the lines of a boat, by number or name.
 
     Raises:
         MissingKnowledgeError: there is no such edition, the boat is not in it, or several boats

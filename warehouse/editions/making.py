@@ -139,7 +139,9 @@ def make_again(store: Store, edition: Edition) -> Edition:
         {"tows": tows, "tow_runs": runs},
         read_decisions_of_edition(store, edition),
         crews=edition.register.filter(status="never_towed"),
-        unmeasured=edition.register.filter(is_flagged).select(*LINE, tow_date=manifest.valid_from),
+        unmeasured=edition.register.filter(is_flagged).select(
+            pl.col(LINE), tow_date=manifest.valid_from
+        ),
     )
     return add_changes(store, again)
 
@@ -178,10 +180,10 @@ def _recompute(
         made.curves, tows, crews, manifest.valid_from, method.validity, decisions, carried
     )
     counts = pl.col("status").is_in(list(counting))
-    own_hash = carried.select(*TOW_DAY, printed_sha256=INPUTS_HASH)
+    own_hash = carried.select(pl.col(TOW_DAY), printed_sha256=INPUTS_HASH)
     lines = (
         draft.join(
-            tows.select("tow_id", *SIZES, INPUTS_HASH),
+            tows.select("tow_id", pl.col(SIZES), INPUTS_HASH),
             on="tow_id",
             how="left",
             maintain_order="left",
@@ -230,7 +232,7 @@ def _complete(
 ) -> pl.DataFrame:
     """Add the facts of boats and the verification codes; check and sort."""
     own = prints.PRINTED_METHOD if method is None else method.name
-    boats = store.read("boats").select("fsn_no", *BOAT_FACTS)
+    boats = store.read("boats").select("fsn_no", pl.col(BOAT_FACTS))
     is_printed = pl.col("basis") == NOT_REBASED
     named = lines.join(boats, on="fsn_no", how="left", maintain_order="left").with_columns(
         edition=pl.lit(manifest.edition),

@@ -53,7 +53,7 @@ def texts(edition: Edition, previous: Edition | None) -> dict[str, str]:
 
 @cache
 def _environment(language: str) -> jinja2.Environment:
-    """Templates of a language, which write its numbers and days."""
+    """Return the template environment of a language, which writes its numbers and days."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),
         undefined=jinja2.StrictUndefined,

@@ -56,8 +56,11 @@ def printed_lines(store: Store, path: str) -> pl.DataFrame:
     hashes = [fingerprint(row) for row in printed.drop("path", "line").rows()]
     has_curve = pl.col("has_valid_curve")
     return printed.select(
-        *TOW_DAY,
-        *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"),
+        pl.col(TOW_DAY),
+        "declared_speed_m_s",
+        "a_kg_m",
+        "b_m_s",
+        "cw_kg_m",
         status=pl.when(has_curve).then(pl.lit("valid")).otherwise(pl.lit(NO_VALID_CURVE)),
         basis=pl.when(has_curve).then(pl.lit(AS_PRINTED)),
         **{INPUTS_HASH: pl.Series(hashes, dtype=pl.String)},

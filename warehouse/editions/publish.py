@@ -158,7 +158,7 @@ class Published:
 
 
 def published(store: Store, folder: Path) -> Published:
-    """Return what there is to say about an edition that was just published."""
+    """Return the summary of an edition that was just published."""
     edition = read_edition(store, folder.name)
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
     return Published(edition.manifest, str(folder), dict(counts.rows()), lines_to_look_at(edition))
@@ -168,7 +168,7 @@ def lines_to_look_at(edition: Edition) -> list[Row]:
     """Return lines with flags, and those left without numbers because their tows are doubted."""
     to_look_at = (pl.col("flags").list.len() > 0) | (pl.col("status") == DOUBTED)
     lines = edition.register.filter(to_look_at)
-    return lines.select(*LINE, "status", "tow_id", "flags").to_dicts()
+    return lines.select(pl.col(LINE), "status", "tow_id", "flags").to_dicts()
 
 
 def _check_terms(store: Store, terms: Terms) -> None:

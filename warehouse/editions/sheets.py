@@ -98,13 +98,11 @@ SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
 def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     """Return the cells of a sheet as they are printed, by header."""
     words = _write_words(frame)
-    return pl.DataFrame(
-        {
-            field.header: [_printed(value, field) for value in words[field.column]]
-            for field in fields
-        },
-        schema={field.header: pl.String() for field in fields},
-    )
+    columns = []
+    for field in fields:
+        texts = [_printed(value, field) for value in words[field.column]]
+        columns.append(pl.Series(field.header, texts, pl.String))
+    return pl.DataFrame(columns)
 
 
 def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str]:
@@ -175,17 +173,15 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
         return False
     cells = _cells(frame, fields)
     formats = [_number_format(field) for field in fields]
-    shown = [tuple(cell.value for cell in row) for row in sheet.iter_rows()]
-    expected = [tuple(cells.columns), *(tuple(map(_read_cell, row)) for row in cells.rows())]
-    formatted = [
-        [cell.number_format for cell in row if cell.value is not None]
-        for row in sheet.iter_rows(min_row=2)
-    ]
-    formats_of_cells = [
-        [name for name, value in zip(formats, row, strict=True) if value not in (None, "")]
-        for row in cells.rows()
-    ]
-    return shown == expected and formatted == formats_of_cells
+    expected: list[list[object]] = [list(cells.columns)]
+    expected += [[_read_cell(value) for value in row] for row in cells.rows()]
+    shown = []
+    is_formatted = True
+    for place, row in enumerate(sheet.iter_rows()):
+        shown.append([cell.value for cell in row])
+        for cell, number_format in zip(row, formats, strict=False):
+            is_formatted &= place == 0 or cell.value is None or cell.number_format == number_format
+    return shown == expected and is_formatted
 
 
 def _cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
@@ -213,7 +209,7 @@ def _number_format(field: Field) -> str:
 
 
 def _write_words(frame: pl.DataFrame) -> pl.DataFrame:
-    """Codes in the words that people read."""
+    """Replace codes by the words that people read."""
     if "flags" in frame.columns:
         to_look_at = pl.col("flags").list.len() > 0
         frame = frame.with_columns(pl.when(to_look_at).then(pl.lit("ja")).alias("flags"))

@@ -117,7 +117,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
     manifests, damaged = readable_manifests(store)
     last = chain_head(store)
     seal = None if last is None else last.seal
-    findings = [*check_chain(store, manifests, seal, head)]
+    findings = list(check_chain(store, manifests, seal, head))
     for name, error in damaged.items():
         where = find_manifest(store.editions / name).name
         findings.append(Finding(name, "altered", where, str(error)))
@@ -242,7 +242,7 @@ def _compare_table(edition: Edition, again: Edition, table: str) -> Iterator[Fin
     was, now = edition.tables.get(table, again.tables[table].clear()), again.tables[table]
     numbers = was.drop("causes", strict=False), now.drop("causes", strict=False)
     rows = differences(*numbers, TABLES[table].primary_key())
-    columns = {*rows["columns"].explode()}
+    columns = set(rows["columns"].explode())
     if table == CHANGES and differences(parts_of(was), parts_of(now), LINE).height:
         columns.add("causes")  # a text with numbers, which are compared as such
     if columns:
@@ -272,16 +272,13 @@ def differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.
         such row; and `columns`: those that differ.
     """
     names = list(dict.fromkeys([*was.columns, *now.columns]))
-    before, after = (
-        frame.with_columns(
-            *(pl.lit(None).alias(name) for name in names if name not in frame.columns),
-            pl.int_range(pl.len()).over(key).alias("row"),
-            pl.lit(value=True).alias("there"),
-        )
-        for frame in (was, now)
-    )
-    pairs = before.join(
-        after,
+    numbered = []
+    for frame in (was, now):
+        lacking = {name: pl.lit(None) for name in names if name not in frame.columns}
+        row = pl.int_range(pl.len()).over(key)
+        numbered.append(frame.with_columns(**lacking, row=row, there=pl.lit(value=True)))
+    pairs = numbered[0].join(
+        numbered[1],
         on=[*key, "row"],
         how="full",
         coalesce=True,

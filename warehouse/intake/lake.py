@@ -89,7 +89,7 @@ def read_tows(
 
 
 def all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
-    """Blocks of all sound tows, with `tow_id`, sorted by season, tow, run and second.
+    """Return the blocks of all sound tows, sorted by season, tow, run and second.
 
     Args:
         store: the data folder.
@@ -183,9 +183,9 @@ def name_files(tow: Row, runs: pl.DataFrame, profile: SeasonProfile) -> tuple[st
     and the code that reads; blocks by their samples and the code that adds them up.
     """
     facts = (
-        *("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s"),
-        *("samples_runs", "second_runs", "run_windows"),
-    )
+        "samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s",
+        "samples_runs", "second_runs", "run_windows",
+    )  # fmt: skip
     samples_key = fingerprint(
         [tow[name] for name in facts],
         runs.sort("run").rows(),

@@ -34,8 +34,8 @@ from warehouse.store.unforeseen import note
 LISTED: Final = ("boats", "tows", "runs", "windows")
 INDEXED: Final = (
     *(f"listed_{name}" for name in (*LISTED, "files", "races")),
-    *("printed_registers", "list_faults", "about_archive", "season_profiles"),
-)
+    "printed_registers", "list_faults", "about_archive", "season_profiles",
+)  # fmt: skip
 """What is kept of the archive's lists."""
 
 
@@ -131,12 +131,12 @@ def listing(root: Path) -> Listing:
 
 
 def all_blocks(store: Store, columns: Sequence[str] | None = None) -> pl.DataFrame:
-    """Blocks of all seasons, or some of their columns."""
+    """Return the blocks of all seasons, or some of their columns."""
     return store.read("blocks", columns=columns)
 
 
 def typed_tows(store: Store) -> pl.DataFrame:
-    """All sound tows with the type of their boat."""
+    """Return all sound tows with the type of their boat."""
     return add_boat_types(store.read("tows"), store.read("boats"))
 
 

@@ -44,7 +44,7 @@ def current_edition(views: Views) -> str:
 
 
 def line_changes(views: Views) -> pl.DataFrame:
-    """Every pair of lines that is compared: `register_changes`, with both numbers beside it.
+    """Return every pair of lines that is compared: `register_changes` with the numbers of both.
 
     Returns:
         Columns of `compare_lines`, ranks as `old_speed_rank` and `new_speed_rank`, the boat's
@@ -53,8 +53,12 @@ def line_changes(views: Views) -> pl.DataFrame:
     """
     kept, register = views.table("register_changes"), views.table("register")
     pairs = kept.select(PAIR).unique().sort(PAIR).rows()
-    sides = [compare_lines(*(register.filter(edition=e) for e in pair)) for pair in pairs]
-    both = pl.concat([compare_lines(register.clear(), register.clear()), *sides])
+    compared_pairs = [compare_lines(register.clear(), register.clear())]
+    for old, new in pairs:
+        compared_pairs.append(
+            compare_lines(register.filter(edition=old), register.filter(edition=new))
+        )
+    both = pl.concat(compared_pairs)
     beside = both.drop(set(kept.columns) - {*PAIR, *LINE})
     key = [*PAIR, *LINE]
     changes = kept.join(beside, on=key, how="left", nulls_equal=True, maintain_order="left")
@@ -62,7 +66,7 @@ def line_changes(views: Views) -> pl.DataFrame:
 
 
 def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None) -> pl.DataFrame:
-    """Any two editions or drafts, compared as on publication; columns as of `line_changes`.
+    """Compare any two editions or drafts as on publication; columns as of `line_changes`.
 
     Args:
         valid_from: the day on which drafts would begin to count; theirs of today when left out.
@@ -70,7 +74,8 @@ def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None
     Raises:
         MissingKnowledgeError: there is no such edition or draft.
     """
-    before, after = (_edition(views, name, valid_from) for name in (old, new))
+    before = _edition(views, old, valid_from)
+    after = _edition(views, new, valid_from)
     lines = compare(views.store, before, after)
     return _named(views, lines.drop("name", "old_status", "new_status"))
 
@@ -89,8 +94,8 @@ def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
 
 
 def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
-    """With the boat, as the new edition or else the old one names it, and `log_known` of both."""
-    boats = views.register().select("edition", *LINE, "name", "boat_type")
+    """Add name and type of the boat by the newer edition, and `log_known` of both."""
+    boats = views.register().select("edition", pl.col(LINE), "name", "boat_type")
     known = log_known(views)
     for side, edition in (("new", "to_edition"), ("old", "from_edition")):
         names = {name: f"{side}_{name}" for name in ("name", "boat_type", "log_known")}
@@ -103,7 +108,7 @@ def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
 
 
 def log_known(views: Views) -> pl.DataFrame:
-    """Per edition and draft whether its intervals hold the error of the log.
+    """Return per edition and draft whether its intervals hold the error of the log.
 
     An edition has it from its own method, also where the warehouse makes that no longer.
     """
@@ -115,7 +120,7 @@ def log_known(views: Views) -> pl.DataFrame:
 
 
 def answers(views: Views, edition: str) -> pl.DataFrame:
-    """Every line of an edition with what there is to say of it.
+    """Return every line of an edition with its changes, next tow, best estimate and prediction.
 
     What stands behind the lines comes from the edition's own folder, which holds no weights and no
     pairs: those are said of drafts alone. The next tow and races are those of today.
@@ -139,20 +144,19 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     lines = views.register().filter(edition=edition)
     compared = changes.drop("name", "boat_type", "to_edition", "new_log_known")
     known = log_known(views).rename({"log_known": "new_log_known"})
-    due = views.table("due_list").select("method", *LINE, "tow_speed_m_s", "speed_reason")
+    due = views.table("due_list").select("method", pl.col(LINE), "tow_speed_m_s", "speed_reason")
     behind = _behind(views, edition)
     logs = behind("log_factors").select(
         "method", "season", log_factor="factor", log_lo="lo", log_hi="hi", log_source="source"
     )
     tows = behind("tows").select("tow_id", "season", "altered")
     old_days = views.table("register").select(
-        *LINE, from_edition="edition", old_tow_date="tow_date"
+        pl.col(LINE), from_edition="edition", old_tow_date="tow_date"
     )
     predicted = behind("predicted_cw").select(
-        *("method", "tow_id", "predicted_cw_kg_m", "predicted_lo_kg_m", "predicted_hi_kg_m"),
-        *("disagrees", pl.col("standard_speed_m_s").alias("predicted_speed_m_s")),
-        cw_there_kg_m="cw_kg_m",
-    )
+        "method", "tow_id", "predicted_cw_kg_m", "predicted_lo_kg_m", "predicted_hi_kg_m",
+        "disagrees", predicted_speed_m_s="standard_speed_m_s", cw_there_kg_m="cw_kg_m",
+    )  # fmt: skip
     joined = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .join(known, on="edition", how="left", maintain_order="left")
@@ -208,7 +212,7 @@ tows at one speed it gives that of their best estimates."""
 
 
 def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
-    """Return what is wrong, or may be, with the instruments of a season, by method and season.
+    """Return faults of the instruments of a season, certain or possible, by method and season.
 
     Returns:
         Rows of `season_diagnosis` with their `size`, that a person should look at.
@@ -219,7 +223,7 @@ def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
 
 
 def _add_places(lines: pl.DataFrame) -> pl.DataFrame:
-    """With the place of each line among the boats of its type and class."""
+    """Add the place of each line among the boats of its type and class."""
     like = ("boat_type", "crew_class")
     places = (
         pl.col(f"{side}_speed_rank")
@@ -235,14 +239,14 @@ def _add_places(lines: pl.DataFrame) -> pl.DataFrame:
 
 
 def select_own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
-    """Results of races under two editions, with how many in race and class have a place in both."""
+    """Return race results under two editions, with how many of a class have a place in both."""
     races = views.ask("races").filter(from_edition=old or "", to_edition=edition)
     size = pl.col("new_rank").count().over("race", "race_date", "crew_class").alias("race_size")
     return races.with_columns(size)
 
 
 def race_chances(views: Views, old: str, new: str) -> dict[tuple[str, str], float | None]:
-    """How likely it is that another crew wins under the new edition, by race and class.
+    """Return how likely another crew wins under the new edition, by race and class.
 
     Returns:
         By race with its day, and class; None where the new register has no ensemble.
@@ -257,16 +261,15 @@ def race_chances(views: Views, old: str, new: str) -> dict[tuple[str, str], floa
 
 
 def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int, int]]:
-    """Who wins the archive's races under two editions, and how many results change place.
+    """Return who wins the races under two editions, and how many results change place.
 
     Returns:
         Rows of `pipeline.register.replay.winner_changes`; results that change place among those
         with one under both, and how many those are.
     """
     history, results = views.table("register_history"), views.store.read("listed_races")
-    before, after = (
-        replay(history.filter(edition=edition), results, RaceRules()) for edition in (old, new)
-    )
+    before = replay(history.filter(edition=old), results, RaceRules())
+    after = replay(history.filter(edition=new), results, RaceRules())
     ranked = race_changes(before, after).drop_nulls("new_rank")
     moved = ranked.filter(pl.col("old_rank") != pl.col("new_rank")).height
     members = _members(views, new)

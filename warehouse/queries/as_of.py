@@ -70,7 +70,7 @@ def _lay(db: duckdb.DuckDBPyConnection, name: str, frame: pl.DataFrame) -> None:
 def register_on(
     register: pl.DataFrame, history: pl.DataFrame, tows: pl.DataFrame, day: dt.date
 ) -> pl.DataFrame:
-    """Rows of `register` as they stood on a day, of every edition.
+    """Return rows of `register` as they stood on a day, of every edition.
 
     A line whose tow was made later is listed as never towed. The verification code is of the
     published line, and stands only where that line is the one that counted.
@@ -79,7 +79,7 @@ def register_on(
     codes = register.select(*key, "tow_id", "verification_code")
     counted = (
         lines_on_days(history.sort(*key, "position"), [day], key)
-        .join(tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left")
+        .join(tows.select("tow_id", pl.col(SIZES)), on="tow_id", how="left", maintain_order="left")
         .join(codes, on=[*key, "tow_id"], how="left", nulls_equal=True, maintain_order="left")
     )
     later = pl.col("tow_date").is_not_null()

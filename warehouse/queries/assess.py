@@ -109,7 +109,7 @@ def assess(store: Store, archive: Path, tow_id: str, method: Method) -> Assessme
 
 
 def _not_usable(tow_id: str, faults: pl.DataFrame) -> MissingKnowledgeError:
-    """Why a tow is not there: what was set aside of it, or that nothing names it."""
+    """Return why a tow cannot be used: what was set aside of it, or that no list names it."""
     in_language = "message_nl" if LANGUAGE.get() == "nl" else "message"
     own = faults.filter(tow_id=tow_id)[in_language].to_list()
     if own:
@@ -132,7 +132,7 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
     tow = own.row(0, named=True)
     dated = tows.filter(pl.col("tow_id") != tow_id, pl.col("tow_date") <= tow["tow_date"])
     is_earlier = (pl.col("tow_date") < tow["tow_date"]) | (pl.col("tow_id") < tow_id)
-    of_tows = dated.select("tow_id", "tow_date", "boat_type", *SIZES_OF_DAY)
+    of_tows = dated.select("tow_id", "tow_date", "boat_type", pl.col(SIZES_OF_DAY))
     others = _find_cw_at_speed(
         curves.join(of_tows, on="tow_id", maintain_order="left"), tow["declared_speed_m_s"]
     ).sort("tow_date", "tow_id")
@@ -264,7 +264,7 @@ def _use_runs(known: pl.DataFrame, replaced_by: Mapping[int, int]) -> Row:
 
 
 def _find_cw_at_speed(curves: pl.DataFrame, speed_m_s: float) -> pl.DataFrame:
-    """Curves with Cw and its interval at a speed; those that end below it go.
+    """Return curves with Cw and its interval at a speed, without those that end below it.
 
     The interval keeps its width in per cent.
     """

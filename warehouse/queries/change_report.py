@@ -92,12 +92,12 @@ def reported_path(store: Store) -> Path:
 
 
 def change_report(store: Store) -> ChangeReport:
-    """Return what changed in the tables since the last report."""
+    """Return the changes of the tables since the last report."""
     return _compare_states(store, _reported_state(store), store.contents(DATABASE_TABLE))
 
 
 def is_reported(store: Store) -> bool:
-    """Whether the tables are those that were reported on."""
+    """Return whether the tables are those that were reported on."""
     return _reported_state(store) == store.contents(DATABASE_TABLE)
 
 
@@ -116,7 +116,7 @@ def _reported_state(store: Store) -> str | None:
 
 
 def _reported(store: Store, names: Sequence[str] = NEEDED) -> Tables | None:
-    """Tables of the last report; None where there is none, or it is damaged."""
+    """Return tables of the last report; None where there is none, or it is damaged."""
     try:
         return {name: read_parquet(reported_path(store) / f"{name}.parquet") for name in names}
     except (FileNotFoundError, DamagedFileError):
@@ -124,7 +124,7 @@ def _reported(store: Store, names: Sequence[str] = NEEDED) -> Tables | None:
 
 
 def _today(store: Store) -> Tables:
-    """Return what a report compares, of the tables in the lake."""
+    """Return the tables of the lake that a report compares."""
     tables = {n: store.read(n) for n in ("boats", "tows", "tow_runs", "hand_windows", "methods")}
     about = {"code_version": code_version(), "database": store.contents(DATABASE_TABLE)}
     is_draft = pl.col("edition").str.starts_with(draft_name(""))
@@ -142,7 +142,7 @@ def _today(store: Store) -> Tables:
 
 @lru_cache(maxsize=1)
 def _compare_states(store: Store, was_state: object, now_state: object) -> ChangeReport:
-    """Return what changed from one state of the tables to another; cached, as several ask."""
+    """Compare two states of the tables; cached, as several ask."""
     now = _today(store)
     was = now if was_state == now_state else _reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
@@ -152,7 +152,7 @@ def _compare_states(store: Store, was_state: object, now_state: object) -> Chang
     return ChangeReport(
         first=was is None,
         tows=_tows(before, now).to_dicts(),
-        seasons_gone=sorted({*before["tows"]["season"]} - {*now["tows"]["season"]}),
+        seasons_gone=sorted(set(before["tows"]["season"]) - set(now["tows"]["season"])),
         editions=[] if was is None else editions.to_dicts(),
         methods=[] if was is None else methods.to_dicts(),
         set_aside=faults.to_dicts(),
@@ -171,7 +171,7 @@ def count_statuses(store: Store) -> Row:
 
 
 def _tows(was: Tables, now: Tables) -> pl.DataFrame:
-    """Tows that came, went, or are made from something else."""
+    """Return tows that came, went, or are made from other files or facts."""
     facts = ("tow_id", "fsn_no", "season", *FILES)
     pairs = (
         was["tows"]
@@ -202,7 +202,7 @@ def _tows(was: Tables, now: Tables) -> pl.DataFrame:
 def _came_and_went(
     was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str], went: str
 ) -> pl.DataFrame:
-    """Rows by their key that are new, and those that are there no more; `what` says which."""
+    """Return the rows that are new and those that are gone, by their key; `what` says which."""
     parts = ((now, was, "new"), (was, now, went))
     return pl.concat(
         mine.select(key)
@@ -213,8 +213,8 @@ def _came_and_went(
 
 
 def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
-    pairs = was.select(*FACTOR, old_factor="factor").join(
-        now.select(*FACTOR, new_factor="factor"), on=FACTOR, maintain_order="left"
+    pairs = was.select(pl.col(FACTOR), old_factor="factor").join(
+        now.select(pl.col(FACTOR), new_factor="factor"), on=FACTOR, maintain_order="left"
     )
     ratio = pl.col("new_factor") / pl.col("old_factor")
     moved = (ratio - 1.0).abs() > SAME_FACTOR
@@ -222,7 +222,7 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 
 
 def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
-    """Lines that changed, of every draft that there was and is, with the boat's name."""
+    """Return lines that changed, of every draft before or now, with the name of the boat."""
     same = find_same_tows(was, now)
     others = any(tables["tows"].height > len(same) for tables in (was, now))
     code = not was["about"]["code_version"].equals(now["about"]["code_version"])
@@ -230,11 +230,14 @@ def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
     measured = {"basis": pl.lit(MEASURED), INPUTS_HASH: pl.lit(None, pl.String)}
     changed = []
     for method in now["methods"]["method"]:
-        old, new = (t["register"].filter(edition=draft_name(method)) for t in (was, now))
+        draft = draft_name(method)
+        old = was["register"].filter(edition=draft)
+        new = now["register"].filter(edition=draft)
         if old.is_empty() or new.is_empty():
             continue
         redefined = hashes[0].get(method) != hashes[1].get(method)
-        old, new = (lines.with_columns(**measured) for lines in (old, new))
+        old = old.with_columns(**measured)
+        new = new.with_columns(**measured)
         ground = grounds(old, new, same, others=others, method=redefined, code=code)
         lines = compare_lines(old, new, NO_PARTS, ground).filter(pl.col("change") != "same")
         named = lines.join(names, on="fsn_no", how="left", maintain_order="left")
@@ -243,7 +246,7 @@ def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
 
 
 def last_changes(store: Store) -> ChangeReport | None:
-    """Return what changed since the last report; where nothing did, what the last change was."""
+    """Return the changes since the last report or, where there are none, the last ones."""
     report = change_report(store)
     if not report.nothing:
         return report

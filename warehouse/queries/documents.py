@@ -53,21 +53,21 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
     about = views.table("editions").filter(edition=edition)
     terms = about.select(OF_EDITION).to_dicts() or [dict.fromkeys(OF_EDITION)]
     crews = lines.sort("rowers", "crew_class").to_dicts()
-    return [
-        line
-        | terms[0]
-        | {
+    rows = []
+    for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts():
+        others = []
+        for other in crews:
+            is_same_line = all(other[name] == line[name] for name in LINE)
+            if other["fsn_no"] == line["fsn_no"] and not is_same_line:
+                others.append(other)
+        added = {
             "new_log_known": known.get(edition),
             "old_log_known": known.get(line["from_edition"]),
             "peers": _list_peers(lines, line),
-            "others": [
-                other
-                for other in crews
-                if other["fsn_no"] == line["fsn_no"] and any(other[k] != line[k] for k in LINE)
-            ],
+            "others": others,
         }
-        for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts()
-    ]
+        rows.append(line | terms[0] | added)
+    return rows
 
 
 def _lines(views: Views, edition: str) -> pl.DataFrame:
@@ -83,10 +83,11 @@ def _lines(views: Views, edition: str) -> pl.DataFrame:
             raise make_unknown_edition_error(edition, drafts["edition"].unique())
         changes = views.table("register_changes").filter(to_edition=edition)
         before = drafts.join(changes, left_on="edition", right_on="from_edition", how="semi")
-    numbers = [
-        pl.col(name).alias(f"old_{name}") for name in ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-    ]
-    held = before.select(*LINE, *numbers, from_edition="edition")
+    held = before.select(
+        pl.col(LINE),
+        pl.col("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m").name.prefix("old_"),
+        from_edition="edition",
+    )
     return lines.join(held, on=LINE, how="left", maintain_order="left")
 
 

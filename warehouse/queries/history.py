@@ -68,7 +68,7 @@ class History:
         )
 
     def under(self, method: Method) -> "Draft":
-        """All tows recomputed, without the bands of their curves, and the register that follows.
+        """Recompute all tows under a method, without bands, and draft its register.
 
         Raises:
             MissingKnowledgeError: the method says nothing about a season.

@@ -51,7 +51,7 @@ class RebuildReport:
 
 
 def rebuild_report(store: Store) -> RebuildReport:
-    """Return what the warehouse holds: tows by season, and what is set aside."""
+    """Return the contents of the warehouse: tows by season, and faults."""
     with open_database(store.database) as db:
         return RebuildReport(
             database=str(store.database),

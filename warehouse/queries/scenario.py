@@ -23,9 +23,9 @@ LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
 """Speeds at which a curve is drawn / declared speed."""
 
 TYPE_COLUMNS: Final = (
-    *("method", "fsn_no", "name", "boat_type", "rowers", "crew_class", "tow_id", "season"),
-    *("weight_kg", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_standard_kg_m"),
-)
+    "method", "fsn_no", "name", "boat_type", "rowers", "crew_class", "tow_id", "season",
+    "weight_kg", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_standard_kg_m",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Scenario:
         return largest_first(lines).join(names, on="fsn_no", how="left", maintain_order="left")
 
     def summary(self) -> dict[str, object]:
-        """How many lines change, who gains and loses, and by how much."""
+        """Return how many lines change, who gains and loses, and by how much."""
         lines = self.register_lines
         changed = lines.filter(change="changed")
         gain = changed["gain_in_two_hours_s"]
@@ -64,7 +64,7 @@ class Scenario:
         }
 
     def season_change(self) -> pl.DataFrame:
-        """Cw after / Cw before of all tows: median and range per season."""
+        """Return median and range per season of Cw after over Cw before, of all tows."""
         curves = self.both(lambda draft: draft.made.curves)
         return season_changes(curves, self.before.method).sort("season")
 
@@ -75,7 +75,7 @@ class Scenario:
         return pl.concat(curve_figure(_lines(curves), runs, curves).values(), how="diagonal")
 
     def boat_curves(self, fsn_no: str) -> pl.DataFrame:
-        """Every tow's curve of a boat under both methods, with the `interval` of the method."""
+        """Return every curve of a boat under both methods, with the `interval` of the method."""
         intervals = {d.method.name: d.method.interval for d in (self.before, self.after)}
         mine = self.both(lambda draft: draft.made.curves).filter(fsn_no=fsn_no)
         return mine.sort("season", "tow_id", maintain_order=True).with_columns(
@@ -83,7 +83,7 @@ class Scenario:
         )
 
     def both(self, of: Callable[[Draft], pl.DataFrame]) -> pl.DataFrame:
-        """Rows of a table of both drafts."""
+        """Return the rows of a table of both drafts."""
         return pl.concat([of(self.before), of(self.after)])
 
     @property
@@ -92,19 +92,20 @@ class Scenario:
 
 
 def _lines(curves: pl.DataFrame) -> pl.DataFrame:
-    """Each curve at `LINE_RATIOS` of its declared speed."""
+    """Return Cw of each curve at `LINE_RATIOS` of its declared speed."""
     rows = LINE_RATIOS.join(curves, how="cross")
-    a, cw, declared, ratio = (
-        rows[name].to_numpy() for name in ("a_kg_m", "cw_kg_m", "declared_speed_m_s", "ratio")
-    )
+    a = rows["a_kg_m"].to_numpy()
+    cw = rows["cw_kg_m"].to_numpy()
+    declared = rows["declared_speed_m_s"].to_numpy()
+    ratio = rows["ratio"].to_numpy()
     speed = ratio * declared
     drawn = curve.cw(a, s_of_height(a, cw, declared), speed)
     nothing = pl.lit(None, pl.Float64)
     lines = rows.select(
-        *("method", "tow_id"),
+        "method", "tow_id",
         speed_m_s=pl.Series(speed),
         cw_kg_m=pl.Series(drawn),
         cw_lo_kg_m=nothing,
         cw_hi_kg_m=nothing,
-    )
+    )  # fmt: skip
     return lines.filter(pl.col("cw_kg_m").is_finite())

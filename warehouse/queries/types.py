@@ -106,7 +106,7 @@ def read_type_facts(views: Views, boat_type: str) -> Row:
 
 
 def find_type_differences(first: Judged, *others: Judged) -> list[str]:
-    """Return what differs between two types: a slope or shift by more than both intervals.
+    """Return the quantities in which two types differ by more than both intervals.
 
     Returns:
         `quantity term` of slopes, `quantity verdict` where boats of one type are equal and those of

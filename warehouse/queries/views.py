@@ -37,11 +37,11 @@ class Views:
         self._db.close()
 
     def frame(self, query: str, *values: object) -> pl.DataFrame:
-        """Rows of a query with these values for its parameters, as a frame."""
+        """Return the rows of a query with these values for its parameters."""
         return pl.DataFrame(self._db.sql(query, params=values or None).pl())
 
     def ask(self, question: str, *values: object) -> pl.DataFrame:
-        """Rows of one of the `QUESTIONS`."""
+        """Return the rows of one of the `QUESTIONS`."""
         return self.frame(QUESTIONS[question], *values)
 
     def table(self, name: str) -> pl.DataFrame:
@@ -53,19 +53,19 @@ class Views:
         return dict(self.frame('SELECT "table", rows FROM contents').rows())
 
     def has(self, table: str) -> bool:
-        """Whether the table is there and holds rows."""
+        """Return whether the table is there and holds rows."""
         return self._contents.get(table, 0) > 0
 
     def comments(self) -> dict[str, str]:
-        """Meaning and unit of every column, as `table.column`."""
+        """Return meaning and unit of every column, as `table.column`."""
         return dict(self.ask("comments").rows())
 
     def about(self) -> dict[str, str]:
-        """Return what is known about the database itself."""
+        """Return facts about the database itself, by key."""
         return dict(self.table("about").rows())
 
     def register(self) -> pl.DataFrame:
-        """Lines of every edition with the boat's name and type: as published, or as listed now."""
+        """Return the lines of every edition with name and type of the boat."""
         lines = self.ask("register")
         key = ["edition", *LINE]
         for edition in edition_names(self.store):
@@ -73,27 +73,27 @@ class Views:
             own = own.select(*key, "name", "boat_type")
             lines = lines.update(own, on=key, include_nulls=True)
         called = pl.col("name").str.to_lowercase()
-        return lines.sort("edition", called, *LINE, nulls_last=True, maintain_order=True)
+        return lines.sort("edition", called, pl.col(LINE), nulls_last=True, maintain_order=True)
 
     def simulated(self, edition: str) -> bool:
-        """Whether an edition is of simulated tows; a draft, whether today's archive is."""
+        """Return whether the tows behind an edition or draft are simulated."""
         if edition.startswith(DRAFT):
             return self.about().get("simulated") == "true"
         return read_manifest(edition_path(self.store, edition)).simulated
 
     def type_names(self) -> list[str]:
-        """Types of which a boat is listed, sorted."""
+        """Return the types of the listed boats, sorted."""
         return self.ask("types")["boat_type"].to_list()
 
     def race_days(self) -> list[tuple[str, dt.date]]:
-        """Races that were replayed, the last one first."""
+        """Return races that were replayed, the last one first."""
         return self.ask("race_days").rows()
 
 
 def curve_figure(
     lines: pl.DataFrame, runs: pl.DataFrame, curves: pl.DataFrame
 ) -> dict[str, pl.DataFrame]:
-    """Rows of the figure `resistance_curve`, by their `kind`.
+    """Return rows of the figure `resistance_curve`, by their `kind`.
 
     Args:
         lines: rows of `curve_points`.

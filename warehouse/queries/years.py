@@ -27,7 +27,9 @@ def summarise_years(lines: pl.DataFrame, printed: pl.DataFrame) -> pl.DataFrame:
         exceeds_interval=pl.col("exceeds_interval").fill_null(value=False).sum(),
         rank_changed=(pl.col("published_rank") != pl.col("rank")).sum(),
     )
-    in_print = printed.filter("has_valid_curve").select(*LINE, year="season", printed_cw="cw_kg_m")
+    in_print = printed.filter("has_valid_curve").select(
+        pl.col(LINE), year="season", printed_cw="cw_kg_m"
+    )
     pairs = lines.join(in_print, on=["year", *LINE], maintain_order="left")
     ratio = pl.col("printed_cw") / pl.col("published_cw_kg_m")
     beside_print = pairs.group_by("year", "method", maintain_order=True).agg(

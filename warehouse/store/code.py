@@ -27,14 +27,17 @@ COMPUTING: Final = ("pipeline", "warehouse.archive", "warehouse.derive")
 def code_hash(*packages: str) -> str:
     """Hash of the modules in some packages, with their paths."""
     hashed = hashlib.sha256()
-    for file in sorted(file for package in packages for file in _modules(package)):
+    files: list[Path] = []
+    for package in packages:
+        files += _modules(package)
+    for file in sorted(files):
         hashed.update(file.relative_to(_ROOT).as_posix().encode() + b"\0" + file.read_bytes())
     return hashed.hexdigest()[:HASH_LENGTH]
 
 
 @cache
 def code_version() -> str:
-    """Version of the package and a hash of what computes a register line from the archive's files.
+    """Return the version with a hash of the code that makes a register line from the archive.
 
     The hash needs no git and is equal wherever the same source is installed. Two lines with equal
     inputs, method and code version are equal.

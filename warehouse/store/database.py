@@ -61,6 +61,6 @@ def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> 
 
 
 def is_simulated(connection: duckdb.DuckDBPyConnection) -> bool:
-    """Whether the archive behind it was made by the simulator."""
+    """Return whether the archive behind a database was made by the simulator."""
     row = connection.execute("SELECT value FROM about WHERE key = 'simulated'").fetchone()
     return row is not None and row[0] == "true"

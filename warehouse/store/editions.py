@@ -139,9 +139,9 @@ def edition_names(store: Store) -> list[str]:
 
 
 def stray_names(store: Store) -> list[str]:
-    """Return what lies among the editions and is none: files, and empty folders."""
+    """Return names among the editions that are none: files, and empty folders."""
     names = {path.name for path in store.editions.glob("[!.]*")}
-    return sorted(names - {*edition_names(store)})
+    return sorted(names - set(edition_names(store)))
 
 
 def is_plain_file(path: Path) -> bool:
@@ -171,7 +171,7 @@ def edition_path(store: Store, edition: str) -> Path:
 
 
 def check_new_name(store: Store, edition: str) -> None:
-    """Refuses a name that no new edition can have.
+    """Refuse a name that no new edition can have.
 
     Raises:
         BrokenPromiseError: the name is taken.
@@ -199,7 +199,7 @@ def find_manifest(path: Path) -> Path:
 
 
 def read_manifest(path: Path) -> Manifest:
-    """Return what an edition says of itself.
+    """Return the description of an edition, from its manifest.
 
     Raises:
         BrokenPromiseError: its manifest is missing or cannot be read.

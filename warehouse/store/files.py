@@ -59,7 +59,7 @@ def write_folder_beside(target: Path) -> Iterator[Path]:
 
 
 def file_sha256(path: Path) -> str:
-    """SHA-256 of a file's content, in hex."""
+    """Return the SHA-256 of a file's content, in hex."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -72,7 +72,7 @@ def write_new(path: Path, text: str) -> None:
 
 
 def sync(path: Path) -> None:
-    """Has the system write a file, or the names in a folder, to disk."""
+    """Make the system write a file, or the names in a folder, to disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)

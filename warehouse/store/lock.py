@@ -54,8 +54,11 @@ def hold_write_lock(root: Path, wait: bool = False) -> Iterator[None]:
 def _remove_leftovers(root: Path) -> None:
     """Remove what was still being written; the caller holds the lock, so nobody else writes."""
     pattern = f"{TEMPORARY_PREFIX}*"
-    ours = [f for f in root.iterdir() if f.is_dir() and f.name not in _NOT_OURS]
-    for left in [*root.glob(pattern), *(left for folder in ours for left in folder.rglob(pattern))]:
+    leftovers = list(root.glob(pattern))
+    for folder in root.iterdir():
+        if folder.is_dir() and folder.name not in _NOT_OURS:
+            leftovers += folder.rglob(pattern)
+    for left in leftovers:
         if left.is_dir() and not left.is_symlink():
             shutil.rmtree(left, ignore_errors=True)
         else:

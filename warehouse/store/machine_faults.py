@@ -117,7 +117,7 @@ def explain_machine_faults(root: Path) -> Iterator[None]:
 
 
 def is_machine_fault(error: BaseException) -> bool:
-    """Whether an error is the machine's, and says nothing about the file it concerns."""
+    """Return whether an error comes from the machine (disk, memory), not from the file."""
     return _machine_fault(error) is not None
 
 

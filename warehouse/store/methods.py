@@ -37,7 +37,7 @@ class KnownMethods:
 
     @classmethod
     def from_store(cls, store: Store) -> Self:
-        """Those of a data folder."""
+        """Return the methods that a data folder knows."""
         return cls(store.root / "methods")
 
     @property
@@ -118,7 +118,7 @@ class KnownMethods:
 
 
 def methods_to_apply(store: Store, listed: Sequence[str], asked: Sequence[str] = ()) -> list[str]:
-    """Names of the methods that a rebuild applies; with the first the others are compared.
+    """Return the names of the methods to apply; the others are compared with the first.
 
     A method that is asked for comes beside those of which the data folder holds tables. Those go
     with their file, or by a list that leaves them out.
@@ -136,7 +136,7 @@ def methods_to_apply(store: Store, listed: Sequence[str], asked: Sequence[str] =
 
 
 def _held(store: Store) -> list[str]:
-    """Methods of which the data folder holds tables."""
+    """Return the methods of which the data folder holds tables."""
     return (
         []
         if store.read_fingerprint("methods") is None

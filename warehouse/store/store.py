@@ -100,7 +100,7 @@ class Store:
         self, table: str, method: str | None = None, columns: Sequence[str] | None = None
     ) -> pl.DataFrame:
         """Read a table as written, or its rows of one method, or some of its columns."""
-        asked = columns if method is None or columns is None else [*{"method", *columns}]
+        asked = columns if method is None or columns is None else list({"method", *columns})
         frame = read_parquet(self.table_path(table), asked)
         if method is None:
             return frame
@@ -108,7 +108,7 @@ class Store:
         return own if columns is None else own.select(columns)
 
     def read_fingerprint(self, table: str) -> str | None:
-        """Fingerprint of what a table was made from; None if it is not there or is damaged."""
+        """Return the fingerprint of the inputs of a table; None if it is missing or damaged."""
         return read_file_metadata(self.table_path(table), FINGERPRINT_KEY)
 
     def contents(self, table: str) -> str | None:
@@ -120,7 +120,7 @@ class Store:
         return read_file_metadata(self.table_path(table), FAILED_KEY)
 
     def count_rows(self, table: str) -> int:
-        """Rows of a table; raises as `read_parquet`."""
+        """Return the number of rows of a table; raises as `read_parquet`."""
         return count_rows(self.table_path(table))
 
 
@@ -133,7 +133,7 @@ def digest_contents(name: str, frame: pl.DataFrame) -> str:
 
 
 def archive_root(store: Store) -> Path | None:
-    """Where the archive was when the warehouse was last rebuilt; None if it is not there now."""
+    """Return where the archive was at the last rebuild; None if it is not there now."""
     if store.read_fingerprint("about_archive") is None:
         return None
     root = Path(store.read("about_archive")["root"][0])
@@ -194,7 +194,7 @@ def read_parquet(
 
 
 def read_file_metadata(path: Path, key: str) -> str | None:
-    """Return what a file says of itself under a key; None if it says nothing or is damaged."""
+    """Return the metadata of a file under a key; None if it has none or is damaged."""
     if not path.exists():
         return None
     try:
@@ -207,7 +207,7 @@ def read_file_metadata(path: Path, key: str) -> str | None:
 
 
 def count_rows(path: Path) -> int:
-    """Rows of a frame that was written with `write_parquet`; raises as `read_parquet`."""
+    """Return the number of rows of a Parquet file of ours; raises as `read_parquet`."""
     with _damage_named(path):
         return int(pq.read_metadata(path).num_rows)
 
@@ -241,7 +241,10 @@ def write_parquet(
         form: how it is packed, in the words of Arrow; None for the form of tables.
     """
     table = frame.to_arrow()
-    tight = pa.Table.from_arrays(table.columns, schema=_tight_schema(table))
+    fields = []
+    for field, column in zip(table.schema, table.columns, strict=True):
+        fields.append(field.with_nullable(column.null_count > 0))  # read in half the time if not
+    tight = pa.Table.from_arrays(table.columns, schema=pa.schema(fields))
     packed = _table_form(table.schema) if form is None else form
     with (
         write_beside(path) as target,
@@ -253,7 +256,7 @@ def write_parquet(
 
 
 def _table_form(schema: pa.Schema) -> dict[str, object]:
-    """How a table is packed: most measured numbers occur once, so a dictionary of them is waste."""
+    """Return how a table is packed: without a dictionary where most numbers occur once."""
     numbers = [column.name for column in schema if pa.types.is_floating(column.type)]
     others = [column.name for column in schema if column.name not in numbers]
     return {
@@ -261,9 +264,3 @@ def _table_form(schema: pa.Schema) -> dict[str, object]:
         "use_byte_stream_split": numbers,
         "use_dictionary": others,
     }
-
-
-def _tight_schema(table: pa.Table) -> pa.Schema:
-    """Columns without gaps as columns that cannot have any: these are read in half the time."""
-    columns = zip(table.schema, table.columns, strict=True)
-    return pa.schema([f.with_nullable(c.null_count > 0) for f, c in columns])

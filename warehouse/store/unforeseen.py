@@ -25,7 +25,7 @@ _NOT_OURS: Final = (HerijkError, MemoryError, OSError, KeyboardInterrupt, System
 
 
 def is_unforeseen(error: BaseException) -> bool:
-    """Whether an error is a fault of ours: not of the input, and not of the machine.
+    """Return whether an error is a fault of Herijk: not of the input, and not of the machine.
 
     A panic of a library in Rust is no `Exception`, and one of ours all the same.
     """
@@ -33,7 +33,7 @@ def is_unforeseen(error: BaseException) -> bool:
 
 
 def shorten_error(error: BaseException) -> str:
-    """Kind and first words of an error."""
+    """Return kind and first words of an error."""
     return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
 
 
@@ -43,7 +43,7 @@ def format_traceback(error: BaseException) -> str:
 
 
 def sentence(tow_id: str, told: str) -> Sentence:
-    """Return what a volunteer reads about a tow that Herijk failed on."""
+    """Return the message about a tow on which Herijk failed."""
     return say(
         "Herijk itself failed on this tow ({}). Its files may be sound. Please report this to the "
         "maintainer of Herijk, with unforeseen/{}.txt of the data folder.",
@@ -60,7 +60,7 @@ def note(root: Path, what: str, trace: str) -> None:
 
 @contextmanager
 def border(root: Path, what: str, failed: list[str] | None = None) -> Iterator[None]:
-    """Round the work of one thing: an error of ours costs that thing, and is kept.
+    """Confine a fault of Herijk to the work on one thing, and keep its traceback.
 
     Args:
         root: the data folder.
@@ -81,7 +81,7 @@ def border(root: Path, what: str, failed: list[str] | None = None) -> Iterator[N
 
 @contextmanager
 def documents(root: Path, command: str) -> Iterator[Border]:
-    """Round a command that makes documents, with the border for each: what failed is told last.
+    """Confine faults of Herijk to the document they are in; name the failed ones at the end.
 
     What is kept of them has no blank in its name, so that no rebuild answers for it (`failures`).
 

@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,7 @@ from warehouse.archive import (
     judge_samples,
     read_tow_samples,
 )
+from warehouse.archive.profile import Profiles, read_profiles
 
 RATE_HZ = 20
 ROWS = 50 * RATE_HZ
@@ -72,11 +73,20 @@ class Archive:
     def scan(self) -> "Scan":
         """Read everything, setting aside what cannot be used."""
         index = index_archive(self.root, FileHashes().hash_file)
+        scan = self._read(index, index.tows, index.profiles)
+        return replace(scan, faults=[*index.faults, *scan.faults])
+
+    def read_first(self, index: ArchiveIndex) -> "Scan":
+        """Read the first tow, of which only samples or profile changed since `index` was made."""
+        return self._read(index, index.tows.filter(tow_id="2014-001"), read_profiles(self.root))
+
+    def _read(self, index: ArchiveIndex, tows: pl.DataFrame, profiles: Profiles) -> "Scan":
+        """Read and judge the samples of some tows."""
         good: dict[str, pl.DataFrame] = {}
-        faults = list(index.faults)
-        for tow in index.tows.iter_rows(named=True):
+        faults: list[Fault] = []
+        for tow in tows.iter_rows(named=True):
             try:
-                profile = index.profiles.find(tow["season"])
+                profile = profiles.find(tow["season"])
                 samples, place, defects = read_tow_samples(self.root, tow, profile)
                 judged = judge_samples(samples, place, tow, index.runs, defects)
             except DefectiveInputError as error:

@@ -10,7 +10,7 @@ import polars as pl
 import pytest
 import xlsxwriter
 
-from tests.warehouse.archive.conftest import Archive
+from tests.warehouse.archive.conftest import Archive, Scan
 from warehouse.archive import read_published_registers, read_races
 
 RATE_HZ = 50
@@ -171,8 +171,12 @@ def typed(tmp_path_factory: pytest.TempPathFactory) -> Archive:
     return Archive(root)
 
 
-def test_each_fault_costs_what_it_touches(typed: Archive) -> None:
-    scan = typed.scan()
+@pytest.fixture(scope="module")
+def scan(typed: Archive) -> Scan:
+    return typed.scan()
+
+
+def test_each_fault_costs_what_it_touches(typed: Archive, scan: Scan) -> None:
     faults = {(f.path.split("/")[-1], f.line, f.tow_id, f.reason_code, f.lost) for f in scan.faults}
     assert faults == {
         ("archief.toml", None, None, "idle_setting", None),
@@ -192,8 +196,8 @@ def test_each_fault_costs_what_it_touches(typed: Archive) -> None:
     assert (printed.height, [fault.line for fault in register_faults]) == (2, [4])
 
 
-def test_lists_read_as_they_are_meant(typed: Archive) -> None:
-    tows = typed.scan().index.tows.sort("tow_id")
+def test_lists_read_as_they_are_meant(scan: Scan) -> None:
+    tows = scan.index.tows.sort("tow_id")
     days = [dt.date(2014, 3, 1), dt.date(2014, 3, 2), dt.date(2014, 3, 2)]
     assert tows["tow_date"].to_list() == [*days, dt.date(2015, 3, 7), dt.date(2015, 3, 8)]
     assert tows["fsn_no"].to_list() == ["FSN101", "FSN102", "FSN103", "FSN104", "FSN101"]
@@ -208,11 +212,11 @@ def test_lists_read_as_they_are_meant(typed: Archive) -> None:
     ("tow_id", "seed", "declared_m_s", "cw_kg_m"), [("2014-2", 2, 2.1, 28), ("2015-2", 5, 2.4, 41)]
 )
 def test_samples_read_as_they_were_measured(
-    typed: Archive, tow_id: str, seed: int, declared_m_s: float, cw_kg_m: float
+    scan: Scan, tow_id: str, seed: int, declared_m_s: float, cw_kg_m: float
 ) -> None:
     names = ["run", "log1_m_s", "log2_m_s", "gps_m_s", "force_n", "wind_speed_m_s"]
     rows = np.array(simulate_tow(seed, declared_m_s, cw_kg_m))
     measured = pl.DataFrame(rows[:, :6], schema=names)
-    read = typed.scan().good[tow_id]
+    read = scan.good[tow_id]
     for name in names:
         assert (read[name].cast(pl.Float64) - measured[name]).abs().max() < 0.01, name

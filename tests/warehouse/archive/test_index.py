@@ -85,27 +85,29 @@ def test_a_fault_in_the_second_file_names_that_file_and_its_line(archive: Archiv
     assert found == ("log_dropout", FIRST, "2014-009", line_of(5, 3))
 
 
-def test_natural_oddities_are_no_faults(archive: Archive) -> None:
+def test_natural_oddities_are_no_faults(archive: Archive, good_scan: Scan) -> None:
     archive.cells(4, lambda cell, line: "-67", line_of(1, 10), line_of(1, 14))  # surge
     archive.cells(1, lambda cell, line: "2,64", line_of(3), line_of(3, 98))  # just under 5 s
     archive.edit(FIRST, lambda text: "\n".join(text.split("\n")[:-11]))  # 49.5 s in run 6
     archive.cells(5, lambda cell, line: "0", line_of(2), line_of(2, 300))  # cups stall
     archive.cells(6, lambda cell, line: "80", line_of(2), line_of(2, 300))  # no wind to turn it
     archive.cells(3, lambda cell, line: "2,40", line_of(2), line_of(2, ROWS - 1))  # held fix
-    assert archive.scan().faults == []
+    assert archive.read_first(good_scan.index).faults == []
 
 
-def test_the_profile_says_what_the_vane_reads_for_wind_from_ahead(archive: Archive) -> None:
-    as_read = archive.scan().good["2014-001"]["wind_angle_deg"]
+def test_the_profile_says_what_the_vane_reads_for_wind_from_ahead(
+    archive: Archive, good_scan: Scan
+) -> None:
+    as_read = good_scan.good["2014-001"]["wind_angle_deg"]
     (archive.root / "archief.toml").write_text(
         '[[profile]]\nseasons = "2014"\nwind_zero_deg = 90\n'
     )
-    turned = archive.scan().good["2014-001"]["wind_angle_deg"]
+    turned = archive.read_first(good_scan.index).good["2014-001"]["wind_angle_deg"]
     assert ((as_read - turned) % 360 - 90).abs().max() < 1e-3
 
 
-def test_a_replaced_log_begins_a_new_part_of_its_season(archive: Archive) -> None:
-    days = archive.scan().index.tows["tow_date"].sort().to_list()
+def test_a_replaced_log_begins_a_new_part_of_its_season(archive: Archive, good_scan: Scan) -> None:
+    days = good_scan.index.tows["tow_date"].sort().to_list()
     toml = "".join(
         f'[[log_replaced]]\ndate = {day}\nlog = "{log}"\nreason = "worn"\n'
         for day, log in ((days[1], "log1"), ("2013-06-01", "log1"), (days[0], "log2"))
@@ -243,9 +245,11 @@ def test_a_race_at_no_boats_speed_is_set_aside(archive: Archive, time: str, stre
     assert "m/s; 0.5 to 6 can be right" in faults[0].message
 
 
-def test_readings_of_the_load_cell_and_lamps_go_to_their_tows(archive: Archive) -> None:
+def test_readings_of_the_load_cell_and_lamps_go_to_their_tows(
+    archive: Archive, good_scan: Scan
+) -> None:
     """A known weight of 50 kg pulls 490.65 N; each tow takes the last day up to its own."""
-    day = archive.scan().index.tows["tow_date"].min()
+    day = good_scan.index.tows["tow_date"].min()
     (archive.root / "sleeplijsten/krachtijkingen_2014.csv").write_text(
         f"datum;gewicht [kg];aflezing [N]\n{day};50;493,1\n{day};50;492,1\n{day};50;494,1\n"
         f"{day};50;0\n2014-12-31;50;400\n"
@@ -270,13 +274,15 @@ def test_readings_of_the_load_cell_and_lamps_go_to_their_tows(archive: Archive) 
     ]
 
 
-def test_a_thousand_with_a_point_beside_decimal_commas_is_no_number(archive: Archive) -> None:
+def test_a_thousand_with_a_point_beside_decimal_commas_is_no_number(
+    archive: Archive, good_scan: Scan
+) -> None:
     """1.012 beside 998,5 may be a thousand and twelve: never 1.012 N."""
     archive.cells(
         4, lambda cell, _: f"{float(cell.replace(',', '.')):.1f}".replace(".", ","), 2, 1 + 6 * ROWS
     )
     archive.cells(4, lambda _, __: "1.012", line_of(2, 7), line_of(2, 9))
-    scan = archive.scan()
+    scan = archive.read_first(good_scan.index)
     force = scan.good["2014-001"].filter(run=2)["force_n"]
     assert force[7:10].is_nan().all()
     assert not force[:7].is_nan().any()

@@ -57,63 +57,66 @@ def test_every_kind_of_list_is_tried():
     }
 
 
-def values_of(name, cells, folder):
-    """What a list of one row is read as, and what is wrong in it."""
+def read_rows(name, rows, folder):
+    """What a list of these rows is read as, by line, and what is wrong on each line."""
     path = folder / "list.csv"
-    path.write_text(";".join(cells) + "\n" + ";".join(cells.values()) + "\n")
+    lines = [";".join(cells) for cells in (rows[0], *(row.values() for row in rows))]
+    path.write_text("\n".join([*lines, ""]))
     kind = LISTS[name][0]
     file = ArchiveFile("list.csv", path, kind, 2014, inside=True)
-    rows = read_lists([file], kind, Profiles())
-    return next(rows.frame.drop("cells").iter_rows(named=True), {}), rows.faults
+    found = read_lists([file], kind, Profiles())
+    values = {row.pop("line"): row for row in found.frame.drop("cells").iter_rows(named=True)}
+    return values, {fault.line: fault for fault in found.faults}
 
 
-def limited():
-    """Every limit of a column that a list has: list, column, header, sign and limit."""
-    for name, (kind, cells) in LISTS.items():
-        for column in kind.columns:
-            header = next((h for h in cells if h.split(" [")[0] == column.header), None)
-            if header is None or column.key not in kind.table.column_names():
-                continue
-            declared = kind.table.columns()[column.key]
-            if not (declared.dtype.is_numeric() and column.key != "run"):
-                continue
-            for sign, limit in zip((-1, 1), limits(kind.table, column.key), strict=True):
-                if limit is not None:
-                    yield pytest.param(
-                        name, column.key, header, sign, limit, id=f"{name}-{column.key}-{sign}"
-                    )
+def limited(kind, cells):
+    """Every limit of a column that a list has: column, header, sign and limit."""
+    for column in kind.columns:
+        header = next((h for h in cells if h.split(" [")[0] == column.header), None)
+        if header is None or column.key not in kind.table.column_names():
+            continue
+        declared = kind.table.columns()[column.key]
+        if not (declared.dtype.is_numeric() and column.key != "run"):
+            continue
+        for sign, limit in zip((-1, 1), limits(kind.table, column.key), strict=True):
+            if limit is not None:
+                yield column.key, header, sign, limit
 
 
 def cell_of(header, value):
     return f"{value * 100 if '%' in header else value:.9g}"
 
 
-@pytest.mark.parametrize(("name", "key", "header", "sign", "limit"), list(limited()))
-def test_one_step_outside_is_set_aside_and_inside_accepted(
-    name, key, header, sign, limit, tmp_path
-):
+@pytest.mark.parametrize("name", LISTS)
+def test_one_step_outside_is_set_aside_and_inside_accepted(name, tmp_path):
     kind, cells = LISTS[name]
-    whole = kind.table.columns()[key].dtype.is_integer()
-    step = 1 if whole else 1e-3 * max(1.0, abs(limit))
-    others = dict(cells)
-    if key in ("start_s", "end_s"):  # a window ends after it begins
-        others |= (
-            {"van [s]": "0"}
-            if key == "end_s"
-            else {"tot [s]": f"{limits(kind.table, 'end_s')[1]:g}"}
-        )
-    inside = limit if whole and kind is not list_kinds.WINDOWS else limit - sign * step
-    accepted, faults = values_of(name, others | {header: cell_of(header, inside)}, tmp_path)
-    assert faults == []
-    assert accepted[key] == pytest.approx(inside)
-    usual, _ = values_of(name, others, tmp_path)
-    assert {k: v for k, v in accepted.items() if k != key} == {
-        k: v for k, v in usual.items() if k != key
-    }
-    outside = others | {header: cell_of(header, limit + sign * step)}
-    _, (fault,) = values_of(name, outside, tmp_path)
-    assert "can be right" in fault.message
-    assert (fault.reason_code, fault.line) == (kind.reason_code, 2)
+    tried = list(limited(kind, cells))
+    assert tried
+    rows, insides = [], []
+    for key, header, sign, limit in tried:
+        whole = kind.table.columns()[key].dtype.is_integer()
+        step = 1 if whole else 1e-3 * max(1.0, abs(limit))
+        usual = dict(cells)
+        if key == "end_s":  # a window ends after it begins
+            usual["van [s]"] = "0"
+        elif key == "start_s":
+            usual["tot [s]"] = f"{limits(kind.table, 'end_s')[1]:g}"
+        inside = limit if whole and kind is not list_kinds.WINDOWS else limit - sign * step
+        insides.append(inside)
+        rows += [
+            usual,
+            usual | {header: cell_of(header, inside)},
+            usual | {header: cell_of(header, limit + sign * step)},
+        ]
+    values, faults = read_rows(name, rows, tmp_path)
+    outside_lines = range(4, 2 + len(rows), 3)
+    assert faults.keys() == set(outside_lines)
+    for (key, *_), inside, line in zip(tried, insides, outside_lines, strict=True):
+        assert "can be right" in faults[line].message
+        assert faults[line].reason_code == kind.reason_code
+        usual, accepted = values[line - 2], values[line - 1]
+        assert accepted[key] == pytest.approx(inside), key
+        assert accepted | {key: None} == usual | {key: None}
 
 
 @pytest.mark.parametrize(("season", "fits"), [(1989, False), (1990, True), (2100, True)])

@@ -101,36 +101,44 @@ def bomb(a: Archive) -> None:
     (a.root / (FIRST + ".gz")).write_bytes(26 * gzip.compress(bytes(10_000_000)))
 
 
-# name: (what is spoiled, code, path, tow, line)
-TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
-    "run missing": (lines(lambda c: [r for r in c if not r.startswith("4;")]), "missing_run", FIRST, None),
-    "run short": (lines(lambda c: c[: LAST - 10 - 10]), "short_run", FIRST, line_of(6)),
-    "cut in mid-row": (lines(lambda c: [*c[:5500], "6;2,"]), "short_run", FIRST, line_of(6)),
-    "cut in half": (lines(lambda c: [*c[:3000], "3;2,"]), "missing_run", FIRST, None),
-    "too many fields": (lines(lambda c: [*c[:9], c[9] + ";1", *c[10:]]), "broken_row", FIRST, 10),
-    "blank line": (lines(lambda c: [*c[:9], "", *c[9:]]), "broken_row", FIRST, 10),
-    "empty gps": (constant(3, "", 77, 77), "bad_number", FIRST, 77),
-    "log1 drops out": (constant(1, "0,000", line_of(2, 100), line_of(2, 300)), "log_dropout", FIRST, line_of(2, 100)),
-    "gps drops out": (constant(3, "0,00", line_of(3, 60), line_of(3, 79)), "gps_dropout", FIRST, line_of(3, 60)),
-    "km/h": (several(scaled(1, 3.6), scaled(2, 3.6), scaled(3, 3.6)), "speed_unit", FIRST, 1),
-    "speeds twice": (several(scaled(1, 2), scaled(2, 2), scaled(3, 2)), "implausible_speed", FIRST, line_of(1)),
-    "force as log1": (swap_header("log1 [m/s]", "kracht [N]"), "swapped_columns", FIRST, 1),
-    "force spike": (constant(4, "-99999,9", line_of(3, 7), line_of(3, 7)), "implausible_value", FIRST, line_of(3, 7)),
-    "wind too strong": (constant(5, "41", line_of(4, 9), line_of(4, 9)), "implausible_value", FIRST, line_of(4, 9)),
-    "sign of force": (scaled(4, -1), "negative_force", FIRST, line_of(1)),
-    "a negative second": (scaled(4, -1, line_of(2, 40), line_of(2, 59)), "negative_force", FIRST, line_of(2, 40)),
-    "log1 stuck": (constant(1, "2,400", line_of(2, 50), line_of(2, 149)), "stuck_channel", FIRST, line_of(2, 50)),
-    "gps under log2": (swap_header("log2 [m/s]", "gps [m/s]"), "swapped_columns", FIRST, 1),
-    "a run twice": (run_again(2, 3), "samples_listed_twice", FIRST, line_of(3)),
-    "run 21": (constant(0, "21", 500, 500), "unknown_run", FIRST, 500),
-    "run in two pieces": (constant(0, "2", 500, 500), "split_run", FIRST, 501),
-    "time goes back": (with_time(0.05, range(498, 499)), "bad_time", FIRST, 500),
-    "time at another rate": (with_time(0.051), "bad_time", FIRST, 2),
-    "column missing": (header("kracht [N]", "krach [N]"), "missing_column", FIRST, 1),
-    "column twice": (header("log2", "log1"), "duplicate_column", FIRST, 1),
-    "unknown unit": (header("kracht [N]", "kracht [stone]"), "unknown_unit", FIRST, 1),
-    "bare wind": (header("wind [m/s];wind [gra]", "wind;wind"), "unknown_unit", FIRST, 1),
-    "empty file": (lambda a: (a.root / FIRST).write_bytes(b""), "unreadable_file", FIRST, None),
+# name: (what is spoiled in the samples, code, line)
+SAMPLE_CASES: dict[str, tuple[Spoil, str, int | None]] = {
+    "run missing": (lines(lambda c: [r for r in c if not r.startswith("4;")]), "missing_run", None),
+    "run short": (lines(lambda c: c[: LAST - 10 - 10]), "short_run", line_of(6)),
+    "cut in mid-row": (lines(lambda c: [*c[:5500], "6;2,"]), "short_run", line_of(6)),
+    "cut in half": (lines(lambda c: [*c[:3000], "3;2,"]), "missing_run", None),
+    "too many fields": (lines(lambda c: [*c[:9], c[9] + ";1", *c[10:]]), "broken_row", 10),
+    "blank line": (lines(lambda c: [*c[:9], "", *c[9:]]), "broken_row", 10),
+    "empty gps": (constant(3, "", 77, 77), "bad_number", 77),
+    "log1 drops out": (constant(1, "0,000", line_of(2, 100), line_of(2, 300)), "log_dropout", line_of(2, 100)),
+    "gps drops out": (constant(3, "0,00", line_of(3, 60), line_of(3, 79)), "gps_dropout", line_of(3, 60)),
+    "km/h": (several(scaled(1, 3.6), scaled(2, 3.6), scaled(3, 3.6)), "speed_unit", 1),
+    "speeds twice": (several(scaled(1, 2), scaled(2, 2), scaled(3, 2)), "implausible_speed", line_of(1)),
+    "force as log1": (swap_header("log1 [m/s]", "kracht [N]"), "swapped_columns", 1),
+    "force spike": (constant(4, "-99999,9", line_of(3, 7), line_of(3, 7)), "implausible_value", line_of(3, 7)),
+    "wind too strong": (constant(5, "41", line_of(4, 9), line_of(4, 9)), "implausible_value", line_of(4, 9)),
+    "sign of force": (scaled(4, -1), "negative_force", line_of(1)),
+    "a negative second": (scaled(4, -1, line_of(2, 40), line_of(2, 59)), "negative_force", line_of(2, 40)),
+    "log1 stuck": (constant(1, "2,400", line_of(2, 50), line_of(2, 149)), "stuck_channel", line_of(2, 50)),
+    "gps under log2": (swap_header("log2 [m/s]", "gps [m/s]"), "swapped_columns", 1),
+    "a run twice": (run_again(2, 3), "samples_listed_twice", line_of(3)),
+    "run 21": (constant(0, "21", 500, 500), "unknown_run", 500),
+    "run in two pieces": (constant(0, "2", 500, 500), "split_run", 501),
+    "time goes back": (with_time(0.05, range(498, 499)), "bad_time", 500),
+    "time at another rate": (with_time(0.051), "bad_time", 2),
+    "column missing": (header("kracht [N]", "krach [N]"), "missing_column", 1),
+    "column twice": (header("log2", "log1"), "duplicate_column", 1),
+    "unknown unit": (header("kracht [N]", "kracht [stone]"), "unknown_unit", 1),
+    "bare wind": (header("wind [m/s];wind [gra]", "wind;wind"), "unknown_unit", 1),
+    "empty file": (lambda a: (a.root / FIRST).write_bytes(b""), "unreadable_file", None),
+    "wind 999 in a run": (constant(5, "999", line_of(2), line_of(3) - 1), "implausible_value", line_of(2)),
+    "gps and a log jump": (several(*(scaled(c, 1.2, line_of(2, 200), line_of(2, 219)) for c in (1, 3))), "implausible_value", line_of(2, 200)),
+    "clock jumps back": (with_time(0.05, range(ROWS + 500, 2 * ROWS)), "bad_time", line_of(2, 500)),
+}  # fmt: skip
+
+
+# name: (what is spoiled, code, path, line)
+LIST_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "unpacks to gigabytes": (bomb, "too_large", FIRST + ".gz", None),
     "link outside": (link_outside, "path_outside_archive", TOWS, 2),
     "no file": (lambda a: (a.root / FIRST).unlink(), "samples_missing", TOWS, 2),
@@ -146,9 +154,6 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "length in feet": (text("8,00", "24,9"), "bad_list_row", TOWS, 2),
     "weight of ten boats": (text(";1400;", ";14000;"), "bad_list_row", TOWS, 2),
     "half the rate": (text(";nee;20;", ";nee;10;"), "long_run", FIRST, 2),
-    "wind 999 in a run": (constant(5, "999", line_of(2), line_of(3) - 1), "implausible_value", FIRST, line_of(2)),
-    "gps and a log jump": (several(*(scaled(c, 1.2, line_of(2, 200), line_of(2, 219)) for c in (1, 3))), "implausible_value", FIRST, line_of(2, 200)),
-    "clock jumps back": (with_time(0.05, range(ROWS + 500, 2 * ROWS)), "bad_time", FIRST, line_of(2, 500)),
     "run b1 without second file": (text("1,2,3,4,5,6", "1,2,3,b4"), "bad_list_row", TOWS, 2),
     "verbouwd": (text("nee", "misschien"), "bad_list_row", TOWS, 2),
     "quote not closed": (text("8,7;6;", '8,7;6;"'), "bad_list_row", TOWS, 2),
@@ -203,20 +208,31 @@ COSTS = {
 """What a fault costs that does not cost the tow."""
 
 
-@pytest.mark.parametrize("case", TOW_CASES)
-def test_one_bad_tow(archive: Archive, good_scan: Scan, case: str) -> None:
-    spoil, code, path, line = TOW_CASES[case]
+def assert_told(scan: Scan, case: str, code: str, path: str, line: int | None) -> None:
+    """The first tow has this one fault, and loses what it costs."""
+    (fault,) = scan.faults
+    assert (fault.reason_code, fault.path, fault.line) == (code, path, line), fault
+    assert fault.tow_id == "2014-001"
+    assert fault.message.endswith(".")
+    assert SAID.get(case, "") in fault.message
+    assert fault.lost == COSTS.get(case), fault
+    assert ("2014-001" in scan.good) == (fault.lost is not None)
+
+
+@pytest.mark.parametrize("case", SAMPLE_CASES)
+def test_a_fault_of_samples(archive: Archive, good_scan: Scan, case: str) -> None:
+    spoil, code, line = SAMPLE_CASES[case]
+    spoil(archive)
+    assert_told(archive.read_first(good_scan.index), case, code, FIRST, line)
+
+
+@pytest.mark.parametrize("case", LIST_CASES)
+def test_a_fault_of_a_list_or_a_file(archive: Archive, good_scan: Scan, case: str) -> None:
+    spoil, code, path, line = LIST_CASES[case]
     spoil(archive)
     scan = archive.scan()
-    found = [(f.reason_code, f.path, f.tow_id, f.line) for f in scan.faults]
-    assert found[0] == (code, path, "2014-001", line), scan.faults
-    assert len(found) == 1
-    assert scan.faults[0].message.endswith(".")
-    assert SAID.get(case, "") in scan.faults[0].message
-    lost = scan.faults[0].lost
-    assert lost == COSTS.get(case), scan.faults
-    kept = scan.good.pop("2014-001", None)
-    assert (kept is None) == (lost is None)
+    assert_told(scan, case, code, path, line)
+    scan.good.pop("2014-001", None)
     assert_others_unchanged(scan, good_scan, {"2014-001"})
 
 
@@ -323,9 +339,9 @@ def test_faults_between_rows_boats_and_files(archive: Archive, good_scan: Scan, 
 
 
 @pytest.mark.parametrize("number", ["1e999", "1_000", "1.000,5", ""])
-def test_no_numbers_from_garbage(archive: Archive, number: str) -> None:
+def test_no_numbers_from_garbage(archive: Archive, good_scan: Scan, number: str) -> None:
     archive.cells(4, lambda cell, line: number, 77, 77)
-    faults = archive.scan().faults
+    faults = archive.read_first(good_scan.index).faults
     assert [(f.reason_code, f.line) for f in faults] == [("bad_number", 77)]
 
 

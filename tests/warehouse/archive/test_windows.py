@@ -61,25 +61,23 @@ def test_a_run_of_the_second_file(archive: Archive) -> None:
     assert archive.scan().index.windows["run"].to_list() == [22]
 
 
-@pytest.mark.parametrize(
-    ("row", "code", "said"),
-    [
-        ("2014-001;2;45;5;zwaan", "bad_window_row", "ends after it begins"),
-        ("2014-001;2;4,5;45;zwaan", "bad_window_row", "whole"),
-        ("2014-001;2;5;45;", "bad_window_row", "'reden' is empty"),
-        ("2014-001;27;5;45;zwaan", "bad_window_row", "runs are 1 to 20"),
-        ("2014-009;2;5;45;zwaan", "window_unknown_tow", "2014-009"),
-        ("2014-001;b2;5;45;zwaan", "window_unknown_run", "no run b2"),
-    ],
+FAULTY = (
+    ("2014-001;1;45;5;zwaan", "bad_window_row", "ends after it begins"),
+    ("2014-001;2;4,5;45;zwaan", "bad_window_row", "whole"),
+    ("2014-001;3;5;45;", "bad_window_row", "'reden' is empty"),
+    ("2014-001;27;5;45;zwaan", "bad_window_row", "runs are 1 to 20"),
+    ("2014-009;2;5;45;zwaan", "window_unknown_tow", "2014-009"),
+    ("2014-001;b2;5;45;zwaan", "window_unknown_run", "no run b2"),
 )
-def test_a_faulty_row_costs_no_tow_and_no_other_row(
-    archive: Archive, row: str, code: str, said: str
-) -> None:
-    give(archive, f"{row}\n2014-003;6;0;31;begin\n")
+
+
+def test_a_faulty_row_costs_no_tow_and_no_other_row(archive: Archive) -> None:
+    give(archive, "\n".join([*(row for row, *_ in FAULTY), "2014-003;6;0;31;begin\n"]))
     scan = archive.scan()
-    (fault,) = scan.faults
-    assert (fault.reason_code, fault.path, fault.tow_id, fault.line) == (code, WINDOWS, None, 2)
-    assert said in fault.message
+    for line, (fault, (_, code, said)) in enumerate(zip(scan.faults, FAULTY, strict=True), start=2):
+        found = (fault.reason_code, fault.path, fault.tow_id, fault.line)
+        assert found == (code, WINDOWS, None, line)
+        assert said in fault.message
     assert scan.index.windows["tow_id"].to_list() == ["2014-003"]
     assert len(scan.good) == 3
 
@@ -120,20 +118,19 @@ def run_2(store: Store, method: Method) -> dict[str, object]:
     )
 
 
-def test_a_window_reaches_the_run_point_and_a_changed_one_does_so_again(
+def test_a_window_reaches_the_run_point_and_a_removed_one_leaves_it(
     archive: Archive, tmp_path: Path, method: Method
 ) -> None:
     store = Store(tmp_path / "data")
-    bring_in(archive, store)
-    searched = run_2(store, method)
     give(archive, GOOD)
     bring_in(archive, store)
     given = run_2(store, method)
     assert (given["window_start_s"], given["window_end_s"]) == (5.0, 45.0)
     assert given["cut_reason"] == "by_hand: zwaan voor de boeg"
     assert given["used"]
-    assert given["cw_kg_m"] != searched["cw_kg_m"]
 
     (archive.root / WINDOWS).unlink()
     bring_in(archive, store)
-    assert run_2(store, method) == searched
+    searched = run_2(store, method)
+    assert not str(searched["cut_reason"]).startswith("by_hand")
+    assert given["cw_kg_m"] != searched["cw_kg_m"]

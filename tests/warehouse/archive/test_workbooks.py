@@ -10,10 +10,15 @@ from pathlib import Path
 import openpyxl
 import pytest
 import xlsxwriter
+from openpyxl.worksheet.worksheet import Worksheet
 
 from tests.warehouse.archive.conftest import BOATS, TOWS, Archive, Scan
 from tests.warehouse.archive.test_formats import assert_same, cells_of, xlsx
 from warehouse.archive import Fault
+from warehouse.archive import kinds as list_kinds
+from warehouse.archive.files import ArchiveFile
+from warehouse.archive.lists import read_lists
+from warehouse.archive.profile import Profiles
 from warehouse.archive.workbooks import MAX_PART_BYTES, show_number
 
 LIST = TOWS.replace(".csv", ".xlsx")
@@ -41,9 +46,28 @@ def faults_of(scan: Scan, path: str = LIST) -> list[Fault]:
     return [fault for fault in scan.faults if fault.path == path]
 
 
-@pytest.mark.parametrize(
-    ("value", "number_format", "ratio"),
-    [
+def add_rows(sheet: Worksheet, number: int) -> list[int]:
+    """Copy the first tow so many times below the list; return the lines."""
+    lines = list(range(7, 7 + number))
+    for line in lines:
+        for column in range(1, sheet.max_column + 1):
+            sheet.cell(line, column, sheet.cell(4, column).value)
+        sheet.cell(line, 1, f"2014-1{line}")
+    return lines
+
+
+def read_rows(archive: Archive) -> tuple[dict[int, dict[str, object]], dict[int, Fault]]:
+    """The rows of the tow list by their line, and what is wrong on each line."""
+    file = ArchiveFile(LIST, archive.root / LIST, list_kinds.TOWS, 2014, inside=True)
+    found = read_lists([file], list_kinds.TOWS, Profiles())
+    rows = {row["line"]: row for row in found.frame.iter_rows(named=True)}
+    faults = {fault.line: fault for fault in found.faults if fault.line is not None}
+    assert len(faults) == len(found.faults)
+    return rows, faults
+
+
+def test_a_percentage_is_what_a_person_sees(archive: Archive) -> None:
+    written = [
         (6, "General", 0.06),
         (0.06, "0%", 0.06),
         (0.0625, "0.0%", 0.0625),
@@ -51,15 +75,18 @@ def faults_of(scan: Scan, path: str = LIST) -> list[Fault]:
         ("6%", "General", 0.06),
         ("6 %", "@", 0.06),
         ("6,5", "@", 0.065),
-    ],
-)
-def test_a_percentage_is_what_a_person_sees(
-    archive: Archive, value: object, number_format: str, ratio: float
-) -> None:
-    change(archive, put(4, CORRECTION, value, number_format))
-    scan = archive.scan()
-    assert faults_of(scan) == []
-    assert scan.index.tows["speed_correction_ratio"][0] == pytest.approx(ratio, rel=1e-12)
+    ]
+
+    def type_in(book: openpyxl.Workbook) -> None:
+        lines = add_rows(book.active, len(written))
+        for line, (value, number_format, _) in zip(lines, written, strict=True):
+            put(line, CORRECTION, value, number_format)(book)
+
+    change(archive, type_in)
+    rows, faults = read_rows(archive)
+    assert faults == {}
+    read = [rows[line]["speed_correction_ratio"] for line in sorted(rows)[3:]]
+    assert read == pytest.approx([ratio for *_, ratio in written], rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -101,28 +128,31 @@ def test_a_unit_that_repeats_that_of_the_header_is_read(archive: Archive) -> Non
     assert scan.index.tows["weight_kg"][0] == 1400
 
 
-@pytest.mark.parametrize(
-    ("column", "value", "said", "lost"),
-    [
-        (CORRECTION, "#N/A", "an error of the spreadsheet", None),
-        (CORRECTION, "#VERW!", "an error of the spreadsheet", None),
-        (CORRECTION, "=1+2", "never calculated", None),
-        (14, "=1+2", "never calculated", "cell"),
-        (14, "#DIV/0!", "an error of the spreadsheet", "cell"),
-        (4, '=CONCATENATE("a","b")', "never calculated", None),
-        (3, "#REF!", "an error of the spreadsheet", None),
+def test_an_error_or_an_uncalculated_formula_is_a_fault_of_its_cell(archive: Archive) -> None:
+    error, formula = "an error of the spreadsheet", "never calculated"
+    written = [
+        (CORRECTION, "#N/A", error, None),
+        (CORRECTION, "#VERW!", error, None),
+        (CORRECTION, "=1+2", formula, None),
+        (14, "=1+2", formula, "cell"),
+        (14, "#DIV/0!", error, "cell"),
+        (4, '=CONCATENATE("a","b")', formula, None),
+        (3, "#REF!", error, None),
         (CORRECTION, "3 of 4", "not an ordinary number", None),
-    ],
-)
-def test_an_error_or_an_uncalculated_formula_is_a_fault_of_its_cell(
-    archive: Archive, column: int, value: str, said: str, lost: str | None
-) -> None:
-    change(archive, put(4, column, value))
-    scan = archive.scan()
-    (fault,) = faults_of(scan)
-    assert (fault.tow_id, fault.line, fault.lost) == ("2014-001", 4, lost)
-    assert said in fault.message
-    assert ("2014-001" in scan.good) == (lost == "cell")
+    ]
+
+    def type_in(book: openpyxl.Workbook) -> None:
+        lines = add_rows(book.active, len(written))
+        for line, (column, value, *_) in zip(lines, written, strict=True):
+            put(line, column, value)(book)
+
+    change(archive, type_in)
+    rows, faults = read_rows(archive)
+    assert sorted(faults) == list(range(7, 7 + len(written)))
+    for (line, fault), (_, _, said, lost) in zip(sorted(faults.items()), written, strict=True):
+        assert (fault.tow_id, fault.lost) == (f"2014-1{line}", lost)
+        assert said in fault.message
+        assert (line in rows) == (lost == "cell")
 
 
 def test_a_row_that_begins_with_an_error_is_no_remark(archive: Archive) -> None:
@@ -222,31 +252,24 @@ def test_a_heading_over_all_columns_is_one_fault(archive: Archive, good_scan: Sc
     assert scan.good.keys() == good_scan.good.keys()
 
 
-@pytest.mark.parametrize("cell", ["C1048576", "XFD4", "XFD1048576"])
-def test_a_far_cell_that_is_only_coloured_costs_nothing(
-    archive: Archive, good_scan: Scan, cell: str
-) -> None:
+def test_a_far_cell_that_is_only_coloured_costs_nothing(archive: Archive, good_scan: Scan) -> None:
     def colour(book: openpyxl.Workbook) -> None:
-        book.active[cell].fill = openpyxl.styles.PatternFill("solid", "FFFF00")
+        for cell in ("C1048576", "XFD4", "XFD1048576"):
+            book.active[cell].fill = openpyxl.styles.PatternFill("solid", "FFFF00")
 
     change(archive, colour)
     assert_same(archive.scan(), good_scan)
 
 
 @pytest.mark.parametrize(
-    ("cell", "has_commas", "read"),
+    ("has_commas", "written"),
     [
-        ("1.140", True, None),
-        ("1,140", True, 1.14),
-        ("1.140", False, None),
-        ("1,140", False, None),
-        (2.475, True, 2.475),
-        (2.475, False, 2.475),
-        ("0.455", False, 0.455),
+        (True, {"1.140": None, "1,140": 1.14, 2.475: 2.475}),
+        (False, {"1.140": None, "1,140": None, 2.475: 2.475, "0.455": 0.455}),
     ],
 )
 def test_a_number_typed_as_text_is_not_taken_for_another(
-    archive: Archive, cell: object, has_commas: bool, read: float | None
+    archive: Archive, has_commas: bool, written: dict[str | float, float | None]
 ) -> None:
     """In a column that a tow can do without: the water's temperature."""
 
@@ -255,13 +278,15 @@ def test_a_number_typed_as_text_is_not_taken_for_another(
             for one in other:
                 if re.fullmatch("[0-9]+,[0-9]+", str(one.value)):
                     one.value = float(one.value.replace(",", "."))
-        book.active.cell(4, 15, cell)
+        for line, cell in zip(add_rows(book.active, len(written)), written, strict=True):
+            book.active.cell(line, 15, cell)
 
     change(archive, type_in)
-    scan = archive.scan()
-    assert scan.index.tows["water_temperature_c"][0] == read
-    codes = [fault.reason_code for fault in faults_of(scan)]
-    assert codes == ([] if read else ["ambiguous_number"])
+    rows, faults = read_rows(archive)
+    for line, read in enumerate(written.values(), start=7):
+        assert rows[line]["water_temperature_c"] == read
+        assert (line in faults) == (read is None)
+    assert {fault.reason_code for fault in faults.values()} == {"ambiguous_number"}
 
 
 def test_the_same_list_as_workbook_and_csv_counts_once(archive: Archive, good_scan: Scan) -> None:

@@ -1,6 +1,6 @@
 """How often verdicts on types are false on boats of known truth, and how often they are found.
 
-    PYTHONPATH=. python -m benchmarks.types [--archives 100] [--write benchmarks/results/types.md]
+    PYTHONPATH=. python -m benchmarks.accuracy.types [--archives 100] [--write FILE]
 
 Tows are drawn directly (`tests.pipeline.consistency_fleet`): a type of 8 or 14 boats towed in ten
 seasons, and thirty boats of no type that are towed twice, whose repeat tows tell the measuring
@@ -68,8 +68,8 @@ def table(archives: int) -> list[str]:
     lines = [
         "# Verdicts on types of known truth",
         "",
-        f"Made by `python -m benchmarks.types`, {archives} archives a row; in per cent, of Cw / B /"
-        f" A. A share of 5 % is known to ± {error:.1f}.",
+        f"Made by `python -m benchmarks.accuracy.types`, {archives} archives a row; in per cent, "
+        f"of Cw / B / A. A share of 5 % is known to ± {error:.1f}.",
         "",
         "Boats that are equal:",
         "",
