@@ -3,6 +3,7 @@
 import io
 import json
 import re
+from contextvars import copy_context
 
 import openpyxl
 import pytest
@@ -44,7 +45,7 @@ def write(line):
 
 def run(store, *options):
     command = ("register", EDITION, "--data", str(store.root), "--lang", "nl", *options)
-    shown = CliRunner().invoke(app, command)
+    shown = copy_context().run(CliRunner().invoke, app, command)  # it sets the language
     assert shown.exit_code == 0, shown.output
     return shown.output
 
