@@ -135,6 +135,7 @@ def test_a_sound_tow_may_go(bench, sound_tow):
     assert "let_go" in kinds
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("what", SPOILED)
 def test_what_goes_wrong_in_a_tow_is_found_on_the_quay(bench, sound_tow, what):
     change, finding, redo = SPOILED[what]

@@ -60,6 +60,7 @@ def test_of_a_proposal(fails, tmp_path):
     assert not out.exists()
 
 
+@pytest.mark.more
 def test_of_pages_in_an_empty_folder(fails, tmp_path):
     (tmp_path / "pages").mkdir()
     command = ("pages", "--out", tmp_path / "pages")

@@ -94,6 +94,7 @@ def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
     assert f"weight_kg {tow['weight_kg']:g} > 777" in findings[0].message
 
 
+@pytest.mark.more
 def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_copy):
     tow = published_copy.tow(2009)["tow_id"]
     published_copy.change_force(tow, lambda n: 1.02 * n)
@@ -107,6 +108,7 @@ def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_
     assert all("tows that went into it changed" in f.message for f in own)
 
 
+@pytest.mark.more
 def test_what_other_code_makes_otherwise_stands_where_the_head_is_known(
     published_copy, monkeypatch
 ):
@@ -123,6 +125,7 @@ def test_what_other_code_makes_otherwise_stands_where_the_head_is_known(
     assert not verify(published_copy.store, False, report.head).wrong
 
 
+@pytest.mark.more
 def test_editions_of_other_code_come_out_equal_where_their_numbers_do(
     bench_of_editions, monkeypatch
 ):
@@ -183,6 +186,7 @@ def carrying(carried, tmp_path):
     return carried.copy(tmp_path)
 
 
+@pytest.mark.more
 def test_carried_and_printed_lines_are_made_again_too(carrying):
     report = verify(carrying.store, afresh=False)
     assert not report.wrong
@@ -257,6 +261,7 @@ def test_every_forged_table_text_and_sheet_is_named(published_copy):
     assert {f.where for f in findings} == {*tables, *TEXTS}
 
 
+@pytest.mark.more
 def test_forged_doubts_come_out_otherwise(published_copy):
     path = folder(published_copy, "2014-2")
     rewritten(path, "tows", doubts=pl.lit(["far_from_type"]))
@@ -294,6 +299,7 @@ def test_forged_inputs_of_an_edition_are_named(published_copy):
     assert [f.where for f in findings] == [f"tow {tow['tow_id']}"]
 
 
+@pytest.mark.more
 def test_an_edition_of_other_blocks_than_the_samples_give_comes_out_otherwise(bench_of_editions):
     store, tow = bench_of_editions.store, bench_of_editions.tow(2014)
     powers = {"force": 1, "log1_cw": 1, "log1_cw2": 2}
@@ -310,6 +316,7 @@ def test_an_edition_of_other_blocks_than_the_samples_give_comes_out_otherwise(be
     assert any("cw_kg_m" in finding.message for finding in findings)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(("edition", "boat"), [("2014-1", "FSN900"), ("printed", "FSN900")])
 def test_a_changed_carried_or_printed_line_comes_out_otherwise(carrying, edition, boat):
     mine = pl.when(fsn_no=boat).then(pl.col("a_kg_m") + 1)
@@ -341,6 +348,7 @@ def test_a_link_in_place_of_a_file_is_told(published_copy, tmp_path):
     assert "link" in findings[0].message
 
 
+@pytest.mark.more
 def test_samples_changed_with_the_same_size_and_time_are_found(published_copy):
     path = published_copy.archive / published_copy.tow(2009)["samples_path"]
     before, text = path.stat(), path.read_bytes()

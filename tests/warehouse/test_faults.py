@@ -75,6 +75,7 @@ def test_the_quarantine_says_what_each_fault_costs_and_tables_do_too(bench_of_ed
     assert "2009-003" not in {*tows["tow_id"], *points["tow_id"]}
 
 
+@pytest.mark.more
 def test_a_fault_keeps_the_day_on_which_it_was_first_seen(bench_of_editions):
     for number, day in enumerate(DAYS, 1):
         spoil(bench_of_editions, f"2009-{number:03d}", no_number)
@@ -84,6 +85,7 @@ def test_a_fault_keeps_the_day_on_which_it_was_first_seen(bench_of_editions):
     }
 
 
+@pytest.mark.more
 def test_the_day_is_known_from_the_database_where_the_lake_lost_it(bench_of_editions):
     bench = bench_of_editions
     spoil(bench, "2009-001", no_number)

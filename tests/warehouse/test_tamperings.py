@@ -222,6 +222,7 @@ MADE_AGAIN = {
 }  # fmt: skip
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("name", MADE_AGAIN)
 def test_what_is_sealed_anew_is_found_when_it_is_made_again(rebuilt_copy, name):
     change, where = MADE_AGAIN[name]
