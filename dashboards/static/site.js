@@ -19,7 +19,7 @@
   function show() {
     selects = own();
     const chosen = selects.map(({ name }) => `[data-${name}]`).join();
-    if (chosen) for (const part of all(chosen)) part.hidden = !isChosen(part);
+    if (chosen) for (const part of all(chosen)) part.toggleAttribute("hidden", !isChosen(part)); // of a picture, too
     for (const table of all(".table")) {
       const words = table.querySelector("[type=search]")?.value ?? "";
       for (const row of all("tbody tr", table)) row.hidden = !has(plain(row.textContent), words);

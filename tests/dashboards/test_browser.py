@@ -68,7 +68,7 @@ def shown(page):
 
 def editions_of_rows(page):
     """The editions of each row that the first table shows."""
-    rows = shown(page).evaluate_all("rows => rows.map(row => row.dataset.edition)")
+    rows = shown(page).evaluate_all("rows => rows.map(row => row.parentElement.dataset.edition)")
     return [row.split("|") for row in rows]
 
 
@@ -177,7 +177,7 @@ def test_search_sort_and_edition(visit):
 def test_races_follow_the_edition(visit, paths):
     page = visit(paths["race"])
     choose(page, "to_edition", EDITIONS[1])
-    rows = shown(page).evaluate_all("rows => rows.map(row => row.dataset.to_edition)")
+    rows = shown(page).evaluate_all("rows => rows.map(row => row.parentElement.dataset.to_edition)")
     assert rows
     assert all(EDITIONS[1] in row.split("|") for row in rows)
 
