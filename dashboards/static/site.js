@@ -71,6 +71,10 @@
     if (target.matches(".csv")) download(target.closest(".table"));
   });
 
+  // A night that did not run makes nothing: the page about the last run says itself that it is old.
+  const OLD_MS = 36 * 3600 * 1000;
+  for (const warning of all("[data-ended]")) warning.hidden = Date.now() - Date.parse(warning.dataset.ended) < OLD_MS;
+
   // The search for a boat, type or race. A word with a typing error is found by its pairs of letters.
   const form = document.querySelector("header form");
   const MOST_FOUND = 12;

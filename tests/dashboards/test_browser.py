@@ -15,6 +15,7 @@ import pytest
 from dashboards.addresses import boat_path, edition_page, race_path, type_path
 from dashboards.guides import GUIDES
 from dashboards.language import Language
+from dashboards.site import STATIC
 from pipeline.messages import LANGUAGES
 from pipeline.tables.display import get_column
 from tests.architecture.repository import ROOT, read
@@ -228,3 +229,17 @@ def test_the_pictures_of_the_readme_can_be_taken(site, tmp_path):
     assert {file.name for file in tmp_path.iterdir()} == shown
     for folder in (tmp_path, draw.parent):
         assert all(0 < (folder / name).stat().st_size < 1_000_000 for name in shown)
+
+
+REPORT = """<!doctype html><html lang="nl" data-root="">
+<p hidden data-ended="2026-05-01T22:00Z">oud</p><script src="site.js"></script></html>"""
+
+
+@pytest.mark.parametrize(("day", "is_old"), [("2026-05-02", False), ("2026-05-04", True)])
+def test_a_report_says_that_it_is_old_where_no_night_followed(page, tmp_path, day, is_old):
+    (tmp_path / "site.js").write_text((STATIC / "site.js").read_text("utf-8"), "utf-8")
+    report = tmp_path / "latest.html"
+    report.write_text(REPORT, encoding="utf-8")
+    page.clock.set_fixed_time(day)
+    page.goto(report.as_uri())
+    assert page.locator("[data-ended]").is_visible() == is_old
