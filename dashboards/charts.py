@@ -66,10 +66,7 @@ def draw_groups(
         return Markup()
     methods = list(dict.fromkeys(row["method"] for row in known))
     groups = list(dict.fromkeys(row[group] for row in known))
-    legend = [
-        LegendEntry.from_kind(language.name_method(name), _get_method_kind(name))
-        for name in methods
-    ]
+    legend = _list_method_entries(language, methods)
     plot = Plot(language, legend=legend)
     drawn = [row[name] for row in known for name in (value, *ends)]
     y = plot.fit_y(drawn, including=[1.0] if with_one else [], bulk=group == "tow")
@@ -125,10 +122,7 @@ def draw_seasons(language: Language, rows: pl.DataFrame, caption: str) -> Markup
     methods = list(dict.fromkeys(row["method"] for row in known))
     seasons = list(dict.fromkeys(row["season"] for row in known))
     eras = [era for era in ERAS if any(era.first <= season <= era.last for season in seasons)]
-    legend = [
-        LegendEntry.from_kind(language.name_method(name), _get_method_kind(name))
-        for name in methods
-    ]
+    legend = _list_method_entries(language, methods)
     height = SEASON_ROW_PX * len(seasons) + ERA_ROW_PX * len(eras) + 90
     plot = Plot(language, 480, height, SEASON_LABEL_PX, 30, legend)
     ratios = [row[name] for row in known for name in ("lowest_ratio", "highest_ratio")]
@@ -158,6 +152,14 @@ def _add_season(plot: Plot, x: Scale, y: float, row: Row) -> None:
     plot.add_path(f"M{low:.1f} {y:.1f}H{high:.1f}", ink, style={"stroke-width": 2})
     tip = _write_tip(plot.language, row, "season", "method", "median_ratio")
     plot.add_point(middle, y, kind, tip)
+
+
+def _list_method_entries(language: Language, methods: Sequence[str]) -> list[LegendEntry]:
+    """Return what a legend says of methods, each with its own mark."""
+    return [
+        LegendEntry.from_kind(language.name_method(name), _get_method_kind(name))
+        for name in methods
+    ]
 
 
 def _get_method_kind(method: str) -> int:

@@ -313,16 +313,18 @@ class Document:
 
         if about is None:
             return [f"<td{attributes}>{write(value)}</td>" for value in cells.to_list()]
-        return [
-            f"<td{attributes}>{self._link_text('fsn_no', boat, write(name)) if name else ''}</td>"
-            for name, boat in zip(cells.to_list(), about.to_list(), strict=True)
-        ]
+        written = []
+        for name, boat in zip(cells.to_list(), about.to_list(), strict=True):
+            link = _write_link(self._link("fsn_no", boat), write(name)) if name else ""
+            written.append(f"<td{attributes}>{link}</td>")
+        return written
 
     def _write_cell(self, name: str, value: Any) -> Markup:
         if isinstance(value, Markup):
             return value
-        if self._link(name, value):
-            return self._link_text(name, value, value)
+        address = self._link(name, value)
+        if address:
+            return _write_link(address, value)
         if name == "messages":  # in Dutch and in English
             return escape(value[LANGUAGES.index(self.language.tag)])
         if name in HASHES:
@@ -331,11 +333,6 @@ class Document:
             return escape(self.language.name_code(value or ""))
         return escape(self.language.write(name, value))
 
-    def _link_text(self, name: str, value: Any, text: str) -> Markup:
-        """Return a text as a link to what the value of a column leads to, if it leads anywhere."""
-        address = self._link(name, value)
-        return Markup('<a href="{}">{}</a>').format(address, text) if address else escape(text)
-
     def _link_to_page(self, name: str, value: Any) -> str:
         """Return the way to the page about the value of a column; empty where there is none."""
         if name == "fsn_no" and value:
@@ -343,6 +340,11 @@ class Document:
         if name == "boat_type" and value not in (None, "", "unknown", "all"):
             return self.root + type_path(value)
         return ""
+
+
+def _write_link(address: str, text: str) -> Markup:
+    """Return a text that leads to an address, if there is one."""
+    return Markup('<a href="{}">{}</a>').format(address, text) if address else escape(text)
 
 
 def _to_frame(rows: Sequence[Mapping[str, Any]]) -> pl.DataFrame:

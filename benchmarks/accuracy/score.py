@@ -70,12 +70,12 @@ def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -
         *_factors(tables["log_factors"], truth, doubted, _not_told_apart(tables)),
         _alarms(truth, faulty, seasons_said(tables, NAMED)),
         *_equal_boats(tables),
-        *_asked(tows),
+        *_count_asked_tows(tows),
     ]
 
 
-def _asked(tows: pl.DataFrame) -> Iterator[Record]:
-    """Return of how many sound tows a person is asked something, or only of their season, per era.
+def _count_asked_tows(tows: pl.DataFrame) -> Iterator[Record]:
+    """Count the sound tows about which, or only about whose season, a person is asked, per era.
 
     Sound is a tow that nothing was done to: not altered, not pulled askew. Of these, `near_*` are
     truly within `NEAR` of the truth as measured.
@@ -201,7 +201,7 @@ def table(records: pl.DataFrame) -> Iterator[str]:
         yield _alarm_line(world, mine.filter(what="alarms"))
         asked = mine.filter(what="sound tows")
         for (group,), rows in asked.group_by("group", maintain_order=True):
-            yield _asked_line(world, str(group), rows)
+            yield _write_asked_line(world, str(group), rows)
         equal = mine.filter(what="equal boats")
         if equal.height:
             share, error = mean_and_error(equal["rejected"].to_numpy(), equal["tested"].to_numpy())
@@ -230,7 +230,7 @@ def _line(world: str, group: str, what: str, rows: pl.DataFrame) -> str:
     return f"| {world} | {group} | {what} | {rows.height} | " + " | ".join(cells) + " |"
 
 
-def _asked_line(world: str, group: str, rows: pl.DataFrame) -> str:
+def _write_asked_line(world: str, group: str, rows: pl.DataFrame) -> str:
     pairs = {
         "asked about": ("asked", "sound_tows"),
         f"within {NEAR:.0%} and asked about": ("near_asked", "near_tows"),

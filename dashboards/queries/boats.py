@@ -15,7 +15,7 @@ from pipeline.method.variant import Difference, differences
 from pipeline.register.register import draft_name
 from pipeline.tables.display import STEP_CHANGE
 from pipeline.tables.row import Row
-from warehouse.queries.answers import answers, season_faults, select_own_races
+from warehouse.queries.answers import add_peers, answers, season_faults, select_own_races
 from warehouse.queries.views import DRAFT, curve_figure
 from warehouse.store.methods import KnownMethods
 
@@ -164,21 +164,15 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     old_ends = results.register.filter(edition=previous or "").select(
         *CREW, "empty_thwart", *(pl.col(name).alias(f"old_{name}") for name in ends)
     )
-    lines = lines.join(
+    lines = add_peers(lines).join(
         old_ends, on=[*CREW, "empty_thwart"], how="left", maintain_order="left", nulls_equal=True
     )
-    by_type: dict[tuple[str, str], list[Row]] = {}
-    for line in lines.drop_nulls(["cw_kg_m", "boat_type"]).to_dicts():
-        by_type.setdefault((line["boat_type"], line["crew_class"]), []).append(line)
     decided_steps = find_decided_steps(find_changed_options(results, previous, edition))
     by_boat: dict[str, list[Row]] = {}
     for line in lines.to_dicts():
         own = races_by_crew.get(tuple(line[name] for name in CREW), races.head(0)).to_dicts()
         of_season = faults.get((line["method"], line["season"]), [])
         answer = describe_answer(line, own, of_season)
-        of_type = by_type.get((line["boat_type"], line["crew_class"]), [])
-        others = [other for other in of_type if other["fsn_no"] != line["fsn_no"]]
-        answer["peers"] = [other["cw_kg_m"] for other in others]
         answer["decided_steps"] = decided_steps
         answer["objection"] = results.objection
         by_boat.setdefault(line["fsn_no"], []).append(answer)

@@ -16,7 +16,7 @@ from pipeline.messages import LANGUAGES
 from pipeline.races.race import FATIGUE_REFERENCE
 from pipeline.studies.ladder import START
 from pipeline.tables.display import STEP_FACTOR
-from pipeline.tables.keys import LINE, SEASON_LEVEL
+from pipeline.tables.keys import LINE, SEASON_LEVEL, WOULD_NOT_SHOW
 from pipeline.tables.row import Row
 from warehouse.editions.compare import causes_of, parts_of
 from warehouse.queries.answers import race_chances
@@ -34,9 +34,6 @@ SHEETS: Final = (CSV, XLSX)
 
 SOUND_VERDICTS: Final = ("sound", "estimated")
 """Verdicts on an instrument that need no look."""
-
-WOULD_NOT_SHOW: Final = "would not show"
-"""The verdict on an instrument of which a fault of the usual size would not be found."""
 
 
 # -- Start ------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ from pipeline.season_log.observation_model import (
 )
 from pipeline.season_log.season_levels import SeasonLevel, compare_season_levels
 from pipeline.tables.frames import dtypes
-from pipeline.tables.keys import SEASON_LEVEL
+from pipeline.tables.keys import SEASON_LEVEL, WOULD_NOT_SHOW
 from pipeline.tables.season_log import SeasonDiagnosis
 
 FAULT_PROBABILITY: Final = 0.5
@@ -43,7 +43,6 @@ FAULT: Final = "fault"
 ALARM: Final = "alarm"
 SOUND: Final = "sound"
 CANNOT_BE_TOLD: Final = "cannot be told"
-WOULD_NOT_SHOW: Final = "would not show"
 ALTERED_BOAT: Final = "altered_boat"
 """What a fault that one boat alone shows may be instead."""
 LEVEL_CAUSES: Final = ("mass_on_board", "water_depth", "waves", "force_not_linear")

@@ -144,10 +144,9 @@ def find_rough_fit(model: Model, near: Fit | None = None) -> Fit:
     The search begins without altered boats. A log that was replaced looks like many tows pulled
     askew, and then is not missed; from a start where that cannot be, it is found.
     """
-    start = near
-    if start is None or not _have_same_effects(start.model, model):
-        start = _search_faults(model, None, with_patterns=False)
-    return _search_faults(model, start, with_patterns=True)
+    if near is None or not _have_same_effects(near.model, model):
+        near = _search_faults(model, None, with_patterns=False)
+    return _search_faults(model, near, with_patterns=True)
 
 
 def _have_same_effects(one: Model, other: Model) -> bool:

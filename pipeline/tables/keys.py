@@ -10,3 +10,6 @@ SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
 
 SEASON_LEVEL: Final = "season_level"
 """Among the instruments of `season_diagnosis`: what all tows of a season have in common."""
+
+WOULD_NOT_SHOW: Final = "would not show"
+"""Among its verdicts: a fault of the usual size would not be found."""

@@ -119,6 +119,22 @@ def log_known(views: Views) -> pl.DataFrame:
     return of_each.select("edition", log_known=pl.col("interval") == COMPLETE)
 
 
+def add_peers(lines: pl.DataFrame) -> pl.DataFrame:
+    """Add `peers`: Cw of the other boats of the same type and class; none without a type.
+
+    Args:
+        lines: rows of one register, with `boat_type`.
+    """
+    of_types = lines.filter(pl.col("boat_type") != "", pl.col("cw_kg_m").is_not_null())
+    others = of_types.select("boat_type", "crew_class", other="fsn_no", peers="cw_kg_m")
+    pairs = lines.join(
+        others, on=["boat_type", "crew_class"], how="inner", maintain_order="left_right"
+    ).filter(pl.col("other") != pl.col("fsn_no"))
+    peers = pairs.group_by(LINE, maintain_order=True).agg("peers")
+    added = lines.join(peers, on=LINE, how="left", maintain_order="left", nulls_equal=True)
+    return added.with_columns(pl.col("peers").fill_null(pl.lit([], pl.List(pl.Float64))))
+
+
 def answers(views: Views, edition: str) -> pl.DataFrame:
     """Return every line of an edition with its changes, next tow, best estimate and prediction.
 

@@ -13,7 +13,7 @@ from pipeline.races.power import find_line_curves
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import LINE
 from pipeline.tables.row import Row
-from warehouse.queries.answers import log_known
+from warehouse.queries.answers import add_peers, log_known
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import make_unknown_edition_error
 from warehouse.store.editions import edition_names, read_edition
@@ -41,7 +41,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line of that boat in it.
     """
-    lines = _lines(views, edition)
+    lines = add_peers(_lines(views, edition))
     wanted = lines.filter(pl.col("cw_kg_m").is_not_null())
     if fsn_no is not None:
         wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())
@@ -63,7 +63,6 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
         added = {
             "new_log_known": known.get(edition),
             "old_log_known": known.get(line["from_edition"]),
-            "peers": _list_peers(lines, line),
             "others": others,
         }
         rows.append(line | terms[0] | added)
@@ -89,15 +88,6 @@ def _lines(views: Views, edition: str) -> pl.DataFrame:
         from_edition="edition",
     )
     return lines.join(held, on=LINE, how="left", maintain_order="left")
-
-
-def _list_peers(lines: pl.DataFrame, line: Row) -> list[float]:
-    """Return Cw of the other boats of the type of a line with a crew of its class."""
-    if not line["boat_type"]:
-        return []
-    alike = lines.filter(boat_type=line["boat_type"], crew_class=line["crew_class"])
-    others = alike.filter(pl.col("fsn_no") != line["fsn_no"])
-    return others["cw_kg_m"].drop_nulls().sort().to_list()
 
 
 def compute_line_curve(line: Row, speeds: Sequence[float]) -> pl.DataFrame:

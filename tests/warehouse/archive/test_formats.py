@@ -31,7 +31,9 @@ def samples_in_other_text(archive: Archive) -> None:
 
 
 def packed_samples(archive: Archive) -> None:
-    first, second, third = ((archive.root / p).read_bytes() for p in (FIRST, SECOND, THIRD))
+    first = (archive.root / FIRST).read_bytes()
+    second = (archive.root / SECOND).read_bytes()
+    third = (archive.root / THIRD).read_bytes()
     write_instead(archive, FIRST, ".txt.gz", gzip.compress(first))
     write_instead(archive, SECOND, ".csv.zst", pa.Codec("zstd").compress(second, asbytes=True))
     numbers = pl.read_csv(third.replace(b",", b"."), separator=";", infer_schema_length=None)

@@ -132,7 +132,7 @@ SAMPLE_CASES: dict[str, tuple[Spoil, str, int | None]] = {
     "bare wind": (header("wind [m/s];wind [gra]", "wind;wind"), "unknown_unit", 1),
     "empty file": (lambda a: (a.root / FIRST).write_bytes(b""), "unreadable_file", None),
     "wind 999 in a run": (constant(5, "999", line_of(2), line_of(3) - 1), "implausible_value", line_of(2)),
-    "gps and a log jump": (several(*(scaled(c, 1.2, line_of(2, 200), line_of(2, 219)) for c in (1, 3))), "implausible_value", line_of(2, 200)),
+    "gps and a log jump": (several(scaled(1, 1.2, line_of(2, 200), line_of(2, 219)), scaled(3, 1.2, line_of(2, 200), line_of(2, 219))), "implausible_value", line_of(2, 200)),
     "clock jumps back": (with_time(0.05, range(ROWS + 500, 2 * ROWS)), "bad_time", line_of(2, 500)),
 }  # fmt: skip
 
