@@ -8,6 +8,7 @@ import polars as pl
 
 from assets.lake import Folders, incremental, outs
 from assets.rules import read_methods
+from pipeline.assessment.acceptance import judge_acceptances
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.recompute.facts import add_hand_windows
 from pipeline.recompute.run_cache import RunCache
@@ -62,6 +63,15 @@ def quarantine(
     before = read_earlier(folders.store, "quarantine")
     failed = add_first_seen(failed_tows, before, dt.date.today())
     return pl.concat([set_aside, conform("quarantine", failed)])
+
+
+@dg.asset
+@incremental(may_fail=True)
+def acceptances(
+    listed_acceptances: pl.DataFrame, listed_tows: pl.DataFrame, curves: pl.DataFrame
+) -> pl.DataFrame:
+    """Return who accepted which tow, and the checks of each method that doubt it since."""
+    return judge_acceptances(listed_acceptances, listed_tows, curves)
 
 
 @dg.multi_asset(outs=outs(*STUDIES), can_subset=True)

@@ -4,7 +4,7 @@ from functools import partial
 from typing import Final
 
 from pipeline.tables import column
-from pipeline.tables.bases import Fault, PerRun, RunList, TowFacts
+from pipeline.tables.bases import Fault, PerRun, PerTow, RunList, TowFacts
 from pipeline.tables.declare import dy
 
 LOST: Final = partial(
@@ -65,6 +65,26 @@ class HandWindows(PerRun):
     start_s = dy.Int16(description="start of the window", min=0, max=600)
     end_s = dy.Int16(description="end of the window", min=1, max=600)
     reason = column.text("why, in the person's words")
+
+
+class Acceptances(PerTow):
+    """Tows that a person accepted after the first assessment, and what doubts them since."""
+
+    accepted_on = column.day("day of the acceptance", primary_key=True)
+    accepted_by = column.text("who accepted the tow, as the list names them")
+    fsn_no = column.fsn_no(nullable=True)
+    redone_runs = column.text(
+        "runs that were towed again, as `1,2,b3`; b3 is run 3 of the second file", nullable=True
+    )
+    note = column.text("why, in the person's words", nullable=True)
+    known_checks = column.texts("codes of checks that marked the tow when it was accepted")
+    newest = column.flag("the tow was not accepted again later: this acceptance counts")
+    doubted_by = column.texts(
+        "codes of checks that mark the tow now and were not known when it was accepted; set_aside "
+        "where it gives no curve because it is set aside; none of an acceptance that does not count"
+    )
+    path = column.text("list of acceptances, relative to the archive")
+    line = column.count("line in it", least=2)
 
 
 class TraceSeconds(PerRun):

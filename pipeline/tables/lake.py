@@ -119,6 +119,19 @@ class ListedLamps(dy.Schema):
     line = column.count("line in it", least=2)
 
 
+class ListedAcceptances(dy.Schema):
+    """Tows that were accepted after the first assessment, as the list has them."""
+
+    tow_id = column.tow_id()
+    accepted_on = column.day("day of the acceptance")
+    accepted_by = column.text("who accepted the tow")
+    redone_runs = column.text("runs that were towed again, as `1,2,b3`", nullable=True)
+    note = column.text("why, in the person's words", nullable=True)
+    known_checks = column.text("codes of checks that marked the tow then", nullable=True)
+    path = column.text("file, relative to the archive")
+    line = column.count("line in it", least=2)
+
+
 class PrintedLines(dy.Schema):
     """Lines of registers as they were published."""
 

@@ -175,7 +175,13 @@ def shorten(text: str) -> str:
 
 
 def decode(data: bytes) -> str:
-    """Return the text of a file in UTF-8 or UTF-16 (with its mark), or else Windows-1252.
+    """Return the text of a file; see `decode_text`."""
+    text, _ = decode_text(data)
+    return text
+
+
+def decode_text(data: bytes) -> tuple[str, str]:
+    """Return the text of a file, and its encoding: UTF-8, UTF-16 (with its mark) or Windows-1252.
 
     Raises:
         DefectiveInputError: `unreadable_file` for anything else, and for an empty file.
@@ -188,7 +194,7 @@ def decode(data: bytes) -> str:
         encodings = () if 0 in data else ("utf-8-sig", "cp1252")
     for encoding in encodings:
         try:
-            return unicodedata.normalize("NFC", data.decode(encoding))
+            return unicodedata.normalize("NFC", data.decode(encoding)), encoding
         except UnicodeDecodeError:
             continue
     said = say("The file is not text in UTF-8, UTF-16 or Windows-1252: it can be damaged.")

@@ -22,10 +22,11 @@ from warehouse.archive.files import (
     list_files,
     outside_archive_error,
 )
-from warehouse.archive.kinds import BOATS, FORCE_CHECKS, LAMPS, TOWS
+from warehouse.archive.kinds import ACCEPTANCES, BOATS, FORCE_CHECKS, LAMPS, TOWS
 from warehouse.archive.list_rules import (
     check_hand_windows,
     find_recordings,
+    read_acceptances,
     read_boats,
     read_force_checks,
     read_lamps,
@@ -50,6 +51,7 @@ class ArchiveIndex:
         runs: one row per run of those tows; runs of a second file are 21 and on.
         windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
             whether they lie in their run.
+        acceptances: tows that a person accepted (`ListedAcceptances`).
         faults: what is set aside, and why.
         files: every file that was looked at.
         profiles: `archief.toml`.
@@ -59,6 +61,7 @@ class ArchiveIndex:
     tows: pl.DataFrame
     runs: dy.DataFrame[ListedRuns]
     windows: pl.DataFrame
+    acceptances: pl.DataFrame
     faults: tuple[Fault, ...]
     files: dy.DataFrame[ListedFiles]
     profiles: Profiles
@@ -96,8 +99,12 @@ def index_archive(
     tows = rows.to_table(ListedTows)
     runs = plan_runs(tows, selections, profiles)
     windows = check_hand_windows(window_rows, runs)
+    acceptances, of_acceptances = read_within_border(
+        ACCEPTANCES, files, lambda own: read_acceptances(own, profiles, listed, runs)
+    )
 
     faults = [*boats.faults, *rows.faults, *of_checks, *of_lamps, *window_rows.faults]
+    faults += of_acceptances
     faults += _find_unread_files(files, profiles)
     faults += _find_unlisted_samples(files, listed, rows.unread, profiles)
     faults += [] if rows.unread else _find_idle_settings(profiles, listed)
@@ -108,6 +115,7 @@ def index_archive(
         tows=tows,
         runs=runs,
         windows=windows,
+        acceptances=acceptances,
         faults=tuple(sorted(faults, key=lambda f: (f.path, f.line or 0, f.tow_id or ""))),
         files=frame_of(ListedFiles, sorted((path, *found) for path, found in hashes.items())),
         profiles=profiles,

@@ -5,6 +5,7 @@ from typing import Final
 
 from pipeline.tables.declare import dy
 from pipeline.tables.lake import (
+    ListedAcceptances,
     ListedBoats,
     ListedForceChecks,
     ListedLamps,
@@ -153,6 +154,21 @@ LAMPS: Final = ListKind(
     (*_TOW_RUN, *_SECONDS),
 )
 """When a lamp beside the beacon burned because the tow line was not square ("Recht sturen")."""
+ACCEPTANCES: Final = ListKind(
+    "sleeplijsten",
+    "beoordelingen()",
+    "bad_acceptance_row",
+    ListedAcceptances,
+    (
+        Column("tow_id", "sleep_id"),
+        Column("accepted_on", "datum"),
+        Column("accepted_by", "goedgekeurd door"),
+        Column("redone_runs", "runs overgedaan", required=False),
+        Column("note", "toelichting", required=False),
+        Column("known_checks", "bevindingen", required=False),
+    ),
+)
+"""Who let a boat go after the first assessment: it waits for that ("Eerste beoordeling")."""
 REGISTERS: Final = ListKind(
     "sloepregister",
     "sloepregister_([0-9]{4})",
@@ -186,4 +202,6 @@ RACES: Final = ListKind(
         _THWART,
     ),
 )
-LIST_KINDS: Final = (BOATS, TOWS, WINDOWS, FORCE_CHECKS, LAMPS, REGISTERS, RACES)
+LIST_KINDS: Final = (
+    BOATS, TOWS, WINDOWS, FORCE_CHECKS, LAMPS, ACCEPTANCES, REGISTERS, RACES,
+)  # fmt: skip

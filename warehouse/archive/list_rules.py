@@ -20,6 +20,7 @@ from warehouse.archive.columns import fold_word
 from warehouse.archive.faults import Fault, fault_from, say_at_line
 from warehouse.archive.files import ArchiveFile, list_files
 from warehouse.archive.kinds import (
+    ACCEPTANCES,
     BOATS,
     FORCE_CHECKS,
     LAMPS,
@@ -28,7 +29,7 @@ from warehouse.archive.kinds import (
     WINDOWS,
     ListKind,
 )
-from warehouse.archive.lists import read_lists
+from warehouse.archive.lists import read_lists, split_runs
 from warehouse.archive.profile import Profiles, read_profiles
 from warehouse.archive.rows import Rows, cell
 from warehouse.archive.samples import write_windows_text
@@ -269,6 +270,49 @@ def read_lamps(files: Iterable[ArchiveFile], profiles: Profiles, tow_ids: pl.Ser
     of_run = burned.agg(burned_s=(pl.col("end_s") - pl.col("start_s")).sum())
     of_tow = of_run.group_by("tow_id", maintain_order=True).agg(pl.col("burned_s").max())
     return of_tow, rows.faults
+
+
+def read_acceptances(
+    files: Iterable[ArchiveFile], profiles: Profiles, listed: pl.DataFrame, planned: pl.DataFrame
+) -> _Read:
+    """Read who accepted which tow (`ListedAcceptances`). A tow may be accepted again later.
+
+    Two different acceptances of one tow on one day cost both, as nobody can know which is right.
+
+    Args:
+        files: those of the archive.
+        profiles: how the lists are worded.
+        listed: `tow_id` and `tow_date` of every listed tow.
+        planned: `tow_id` and `run` of tows that are not set aside.
+    """
+    rows = read_lists(files, ACCEPTANCES, profiles)
+    tow, day, runs = pl.col("tow_id"), pl.col("accepted_on"), pl.col("redone_runs")
+    text = say("sleep_id {tow} is in no tow list.")
+    rows.drop(~tow.is_in(listed["tow_id"].implode()), text, tow=tow)
+    dated = listed.select("tow_id", "tow_date").drop_nulls()
+    towed = dated.group_by("tow_id").agg(pl.col("tow_date").min())
+    number = pl.col("run").cast(pl.Int32)
+    in_second = pl.format("b{}", number - SECOND_FILE_OFFSET)
+    name = pl.when(number > SECOND_FILE_OFFSET).then(in_second).otherwise(number.cast(pl.String))
+    names = planned.group_by("tow_id").agg(planned=name)
+    for known in (towed, names):
+        rows.frame = rows.frame.join(known, on="tow_id", how="left", maintain_order="left")
+    text = say("tow {tow} is accepted on {day}, before it was towed on {towed}.")
+    rows.drop(day < pl.col("tow_date"), text, tow=tow, day=day, towed=pl.col("tow_date"))
+    rows.frame = rows.frame.with_columns(
+        redone_runs=runs.map_elements(lambda cell: ",".join(split_runs(cell)), pl.String)
+    )
+    lacking = runs.str.split(",").list.set_difference("planned")
+    text = say("column 'runs overgedaan' is '{cell}', and tow {tow} has no run {run}.")
+    has_lacking = lacking.list.len() > 0
+    rows.drop(has_lacking, text, cell=cell("redone_runs"), tow=tow, run=lacking.list.join(", "))
+    text = say(
+        "the acceptance of {of} is also on line {line} of {other}, and the two differ: neither "
+        "counts. Keep the right one."
+    )
+    rows.drop_repeated(["tow_id", "accepted_on"], text)
+    table = ACCEPTANCES.table
+    return table.validate(rows.frame.select(table.column_names()), cast=True), rows.faults
 
 
 def read_races(root: Path, profiles: Profiles | None = None) -> _Read:

@@ -58,6 +58,7 @@ _YES: Final = ("ja", "x", "1")
 _NO: Final = ("nee", "0")
 _BOAT: Final = r"^(?i:fsn)?[\s._-]*([0-9]{1,6}[a-zA-Z]?)$"
 _RUN: Final = r"^[bB]?([1-9][0-9]?)$"
+_RUN_RANGE: Final = re.compile(r"(b?)([0-9]{1,2})-b?([0-9]{1,2})")
 _TIME: Final = r"^([0-9]{1,2}):([0-5]?[0-9]):([0-5]?[0-9])$"
 _ISO_DATE: Final = r"^([0-9]{4}-[0-9]{1,2}-[0-9]{1,2})([T ][0-9]{1,2}:[0-9]{2}(:[0-9]{2})?)?$"
 _DUTCH_DATE: Final = r"^([0-9]{1,2}-[0-9]{1,2}-[0-9]{4})( [0-9]{1,2}:[0-9]{2}(:[0-9]{2})?)?$"
@@ -580,6 +581,16 @@ def _describe_wrong_cell(key: str, dtype: pl.DataType) -> Sentence:
         pl.Int16: whole,
     }
     return by_key.get(key) or by_type.get(dtype.base_type(), number)
+
+
+def split_runs(written: str) -> list[str]:
+    """Return the runs that a cell names, as written: `1-3,b4` names `1`, `2`, `3` and `b4`."""
+    parts: list[str] = []
+    for part in re.split(r"[\s,;]+", written.casefold()):
+        match = _RUN_RANGE.fullmatch(part)
+        numbers = range(int(match[2]), min(int(match[3]), MOST_RUNS) + 1) if match else ()
+        parts += [f"{match[1]}{number}" for number in numbers] if match else [part]
+    return parts
 
 
 # The value of a cell of text, null where it has none

@@ -50,6 +50,7 @@ REMEDIES: Final[Mapping[str, Sentence]] = {
     "window_unknown_run": _WINDOW,
     "window_outside_run": _WINDOW,
     "window_given_twice": _WINDOW,
+    "bad_acceptance_row": say("Correct the row; until then the tow counts as not accepted."),
     "bad_register_row": _IN_ROW,
     "bad_race_row": _IN_ROW,
     "samples_missing": say("Put the file into meetdata_<jaar>/, or correct its name in the list."),

@@ -10,7 +10,7 @@ from typing import Any, Final
 
 import polars as pl
 
-from pipeline.channels import FEWEST_RUNS, MOST_RUNS, SECOND_FILE_OFFSET
+from pipeline.channels import FEWEST_RUNS, SECOND_FILE_OFFSET
 from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
@@ -25,6 +25,7 @@ from warehouse.archive.files import (
 )
 from warehouse.archive.kinds import TOWS
 from warehouse.archive.list_rules import Boats, name_boats
+from warehouse.archive.lists import split_runs
 from warehouse.archive.profile import RUN_PLACE, Plan, Profiles, SeasonProfile
 from warehouse.archive.rows import Rows, cell
 
@@ -33,7 +34,6 @@ TWICE: Final = 2.0
 _SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m")
 """What a tow or else its boat must have; the height of the bow only where wind was measured."""
 _TOW_ID: Final = r"^[^/\\\x00-\x1f]{1,64}$"
-_RANGE: Final = re.compile(r"(b?)([0-9]{1,2})-b?([0-9]{1,2})")
 
 
 def check_tows(
@@ -122,11 +122,7 @@ def read_selection(written: str, has_second: bool, plan: Plan) -> frozenset[int]
     if not written:
         second = plan.runs if plan.second_directions and has_second else ()
         return frozenset([*plan.runs, *(SECOND_FILE_OFFSET + run for run in second)])
-    parts: list[str] = []
-    for part in re.split(r"[\s,;]+", written.casefold()):
-        match = _RANGE.fullmatch(part)
-        numbers = range(int(match[2]), min(int(match[3]), MOST_RUNS) + 1) if match else ()
-        parts += [f"{match[1]}{number}" for number in numbers] if match else [part]
+    parts = split_runs(written)
     planned = {str(run): run for run in plan.runs}
     if has_second:
         planned |= {f"b{run}": SECOND_FILE_OFFSET + run for run in plan.runs}

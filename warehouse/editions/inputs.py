@@ -66,7 +66,8 @@ def find_same_tows(
 def list_files(store: Store) -> dict[str, str]:
     """Return the lists of the archive, by path, with the SHA-256 of each."""
     is_list = pl.col("path").str.contains(r"^(sleeplijsten/|sloepregister/sloependata|archief)")
-    listed = store.read("listed_files").filter(is_list).sort("path")
+    is_acceptance = pl.col("path").str.starts_with("sleeplijsten/beoordelingen.")  # no number's
+    listed = store.read("listed_files").filter(is_list & ~is_acceptance).sort("path")
     return dict(listed.select("path", "sha256").rows())
 
 

@@ -31,7 +31,7 @@ from warehouse.intake import lake
 from warehouse.store.store import Store, fingerprint
 from warehouse.store.unforeseen import note
 
-LISTED: Final = ("boats", "tows", "runs", "windows")
+LISTED: Final = ("boats", "tows", "runs", "windows", "acceptances")
 INDEXED: Final = (
     *(f"listed_{name}" for name in (*LISTED, "files", "races")),
     "printed_registers", "list_faults", "about_archive", "season_profiles",
