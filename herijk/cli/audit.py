@@ -28,6 +28,7 @@ BOAT_FIELDS: Final = (
     "runs",
     "budget",
     "checks",
+    "acceptances",
     "in_type",
     "repeat_pairs",
     "predicted",
@@ -57,7 +58,8 @@ TOW_FIELDS: Final = (
     "own_before",
     "of_type",
 )
-"""What JSON has of a boat, of types, and of a tow on the quay."""
+ACCEPTANCE_FIELDS: Final = ("method", "verdict", "flags", "path", "header", "line", "written")
+"""What JSON has of a boat, of types, of a tow on the quay, and of its acceptance."""
 
 
 @click.command(
@@ -171,27 +173,68 @@ def show_lineage(store: "Store", edition: str, name: str) -> None:
 
 @click.command(
     cls=Command,
-    examples=("herijk assess 2018-007",),
+    examples=(
+        "herijk assess 2018-007",
+        'herijk assess 2018-007 --accept "J. de Vries" --redo 2,5 --note "steering"',
+    ),
 )
 @argument("tow_id", metavar="TOW", help="Number of the tow in the list of the season.")
 @archive_option
 @data_option
 @option("--method", help="Method. Default: that of the newest edition, or rebased.")
+@option("--accept", metavar="NAME", help="Accept the tow, and print the line that records it.")
+@option("--redo", metavar="RUNS", help="With --accept: runs that were towed again, as 2,5.")
+@option("--note", metavar="TEXT", help="With --accept: why.")
+@flag("--write", help="With --accept: add the line to beoordelingen.csv of the archive.")
 @form_options
-def assess(tow_id: str, archive: Path, store: "Store", method: str | None) -> None:
-    """Assess a tow while the boat waits: provisional, and nothing is stored."""
+def assess(
+    tow_id: str,
+    archive: Path,
+    store: "Store",
+    method: str | None,
+    accept: str | None,
+    redo: str | None,
+    note: str | None,
+    write: bool,
+) -> None:
+    """Assess a tow while the boat waits: provisional, and nothing is stored.
+
+    With --accept also say who accepts it; only with --write is that stored, in the archive.
+    """
     from dashboards.queries.quay import describe_tow
     from pipeline.method.definition import COMPLETE
     from pipeline.register.register import STUDIED_METHOD
+    from warehouse.archive.acceptance import Acceptance, compose_line
     from warehouse.editions.publish import latest_before
     from warehouse.queries import assess as tows
     from warehouse.store.editions import read_edition
     from warehouse.store.methods import KnownMethods
 
+    if accept is None and (redo or note or write):
+        raise click.UsageError(tell("--redo, --note and --write go with --accept NAME"))
+    if accept is not None and not accept.strip():
+        raise click.UsageError(tell("say who accepts the tow: --accept NAME"))
     today = dt.date.today()
     edition = None if method else latest_before(store, today, today)
     in_force = None if edition is None else read_edition(store, edition).method
     chosen = in_force or KnownMethods.from_store(store).get(method or STUDIED_METHOD)
     found = tows.assess(store, archive, tow_id, chosen)
-    data = describe_tow(found, log_known=chosen.interval == COMPLETE)
-    show("tow", data, TOW_FIELDS)
+    if accept is None:
+        data = describe_tow(found, log_known=chosen.interval == COMPLETE)
+        show("tow", data, TOW_FIELDS)
+        return
+    acceptance = Acceptance(
+        tow_id=tow_id,
+        towed_on=found.tow["tow_date"],
+        planned_runs=found.planned_runs,
+        accepted_by=accept,
+        accepted_on=today,
+        redone_runs=redo or "",
+        note=note or "",
+        known_checks=found.curve["flags"],
+    )
+    line = compose_line(archive, acceptance)
+    if write:
+        line.write()
+    data = vars(found) | vars(line) | {"is_new": line.before is None, "written": write}
+    show("acceptance", data | {"flags": found.curve["flags"]}, ACCEPTANCE_FIELDS)

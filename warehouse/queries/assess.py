@@ -62,6 +62,7 @@ class Assessment:
         ways_to_use: how `runs` that no plan knows can be used, `instead_of` others: `use_runs`,
             what the list would say, and `plan`, what `archief.toml` would say. Several ways where
             a person must tell which is meant.
+        planned_runs: the numbers of the runs that its plan knows.
         lost: what is set aside of it: rows of `quarantine`.
         own_before: the newest earlier curve of this boat and crew, with `tow_date`; its `cw_kg_m`
             and interval are at the declared speed of this tow. None where there is none.
@@ -79,6 +80,7 @@ class Assessment:
     redo: list[int] | None
     first_assessment: list[Row]
     ways_to_use: list[Row]
+    planned_runs: list[int]
     lost: list[Row]
     own_before: Row | None
     of_type: Row
@@ -159,6 +161,7 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
             line_before=own_before,
         )
     )
+    planned = store.read("listed_runs").filter(tow_id=tow_id)
     like = others.filter(
         pl.col("fsn_no") != tow["fsn_no"],
         pl.col("boat_type") == pl.lit(tow["boat_type"], pl.String),
@@ -174,7 +177,8 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
         verdict=get_verdict(found),
         redo=get_runs_to_redo(found),
         first_assessment=found.to_dicts(),
-        ways_to_use=propose_use_of_runs(found, store.read("listed_runs").filter(tow_id=tow_id)),
+        ways_to_use=propose_use_of_runs(found, planned),
+        planned_runs=planned["run"].to_list(),
         lost=set_aside.to_dicts(),
         own_before=own_before,
         of_type=like.unique(LINE, keep="last")

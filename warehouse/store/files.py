@@ -14,11 +14,15 @@ TEMPORARY_PREFIX = ".herijk-"
 
 
 @contextmanager
-def write_beside(path: Path) -> Iterator[Path]:
+def write_beside(path: Path, mode: int = 0o644) -> Iterator[Path]:
     """Yield a temporary path in the same folder; rename it to `path` if all went well.
 
     The content is synced before the rename, and the rename replaces an older file at once; after
     an error or a kill the older file is still there, whole.
+
+    Args:
+        path: the file to write.
+        mode: who may read and write it.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(prefix=TEMPORARY_PREFIX, suffix=path.suffix, dir=path.parent)
@@ -27,7 +31,7 @@ def write_beside(path: Path) -> Iterator[Path]:
     try:
         yield beside
         sync(beside)
-        beside.chmod(0o644)
+        beside.chmod(mode)
         beside.replace(path)
         sync(path.parent)
     finally:
