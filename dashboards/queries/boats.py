@@ -74,6 +74,9 @@ def read_boat(
     tows = dict(curves.select("tow_id", "tow").rows())
     crews = read_answers(results, chosen_edition).get(fsn_no, []) if tows else []
     size = pl.col("cw_effect_ratio").log().abs()
+    acceptances = own("acceptances")
+    accepted = acceptances.filter("newest").select("tow_id", "accepted_on", "accepted_by").unique()
+    lineage = results.select_boat("lineage", fsn_no).filter(of_editions)
     budget = own("uncertainty_budget").filter(pl.col("u_ratio") >= NEGLIGIBLE_CHANGE)
     return {
         "methods": [name for name in shown if name in curves["method"].unique()],
@@ -94,7 +97,8 @@ def read_boat(
         "options": own("option_effects").sort(size, descending=True, maintain_order=True),
         "checks": own("flagged"),
         "hand_windows": results.select_boat("hand_windows", fsn_no),
-        "lineage": results.select_boat("lineage", fsn_no).filter(of_editions),
+        "acceptances": acceptances,
+        "lineage": lineage.join(accepted, on="tow_id", how="left", maintain_order="left"),
         "set_aside": results.views.frame(_SET_ASIDE, fsn_no, boat["name"] or fsn_no).to_dicts(),
         "drawn": {
             "curve": pl.concat(figure.values(), how="diagonal_relaxed"),

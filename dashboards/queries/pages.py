@@ -501,6 +501,7 @@ def read_quality(results: Results) -> Data:
         "statuses": counts,
         "set_aside": faults,
         "flags": views.ask("flagged_boats").filter(is_shown),
+        "doubted": views.ask("doubted_acceptances").filter(is_shown),
         "run_reasons": views.ask("counts", "run").filter(is_shown),
         "checks": views.ask("checks").filter(is_shown & has_found & ~is_usual),
         "methods": results.methods,

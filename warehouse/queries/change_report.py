@@ -61,7 +61,8 @@ class ChangeReport:
         lines: lines of draft registers that changed, as `pipeline.register.changes.compare_lines`
             has them, with the boat's `name`.
         judged: the method that is shown first, as `method`, and how many of its tows are
-            `accepted`, `flagged` and `rejected` now, changed or not.
+            `accepted`, `flagged` and `rejected` now, changed or not; and the tows that a person
+            accepted and a check doubts since, as `doubted`.
     """
 
     first: bool
@@ -163,11 +164,16 @@ def _compare_states(store: Store, was_state: object, now_state: object) -> Chang
 
 
 def count_statuses(store: Store) -> Row:
-    """Return how many tows the method that is shown first accepts, flags and rejects."""
+    """Return how many tows the method that is shown first accepts, flags and rejects.
+
+    And which tows that a person accepted it doubts since.
+    """
     method = default_method(store.read("methods")["method"].to_list())
     statuses = store.read("curves", method, columns=["status"])["status"]
     counts = {name: int((statuses == name).sum()) for name in STATUSES}
-    return {"method": method, **counts}
+    acceptances = store.read("acceptances", method)
+    doubted = acceptances.filter(pl.col("doubted_by").list.len() > 0)["tow_id"].to_list()
+    return {"method": method, **counts, "doubted": doubted}
 
 
 def _tows(was: Tables, now: Tables) -> pl.DataFrame:

@@ -141,6 +141,11 @@ FROM curves AS c JOIN tows AS t USING (tow_id) JOIN methods AS m USING (method)
 LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
 ORDER BY c.fsn_no, t.tow_date, c.tow_id, c.method
 """,
+    # Accepted tows that a later check doubts, with the boat's name.
+    "doubted_acceptances": """
+SELECT a.*, b.name FROM acceptances AS a LEFT JOIN boats AS b USING (fsn_no)
+WHERE len(a.doubted_by) > 0 ORDER BY a.method, a.tow_id
+""",
     # Every boat and crew under every method, the tow that expires first on top.
     "due_list": """
 SELECT d.*, b.name, b.boat_type FROM due_list AS d LEFT JOIN boats AS b USING (fsn_no)
