@@ -290,11 +290,11 @@ def read_acceptances(
     text = say("sleep_id {tow} is in no tow list.")
     rows.drop(~tow.is_in(listed["tow_id"].implode()), text, tow=tow)
     dated = listed.select("tow_id", "tow_date").drop_nulls()
-    towed = dated.group_by("tow_id").agg(pl.col("tow_date").min())
+    towed = dated.group_by("tow_id", maintain_order=True).agg(pl.col("tow_date").min())
     number = pl.col("run").cast(pl.Int32)
     in_second = pl.format("b{}", number - SECOND_FILE_OFFSET)
     name = pl.when(number > SECOND_FILE_OFFSET).then(in_second).otherwise(number.cast(pl.String))
-    names = planned.group_by("tow_id").agg(planned=name)
+    names = planned.group_by("tow_id", maintain_order=True).agg(planned=name)
     for known in (towed, names):
         rows.frame = rows.frame.join(known, on="tow_id", how="left", maintain_order="left")
     text = say("tow {tow} is accepted on {day}, before it was towed on {towed}.")
