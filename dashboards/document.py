@@ -24,7 +24,7 @@ from pipeline.method.writing import range_text
 from pipeline.tables.display import get_column
 
 WIDE_COLUMNS: Final = re.compile(
-    "reason|causes|message|decision|candidates|confused_with|remark|flags|^note$|checks|doubted"
+    "reason|causes|message|decision|candidates|confused_with|remark|flags|explanation|checks|doubted"
 )
 """Columns of texts that may take several lines."""
 

@@ -76,7 +76,7 @@ class Acceptances(PerTow):
     redone_runs = column.text(
         "runs that were towed again, as `1,2,b3`; b3 is run 3 of the second file", nullable=True
     )
-    note = column.text("why, in the person's words", nullable=True)
+    explanation = column.text("why, in the person's words", nullable=True)
     known_checks = column.texts("codes of checks that marked the tow when it was accepted")
     newest = column.flag("the tow was not accepted again later: this acceptance counts")
     doubted_by = column.texts(

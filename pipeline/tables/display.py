@@ -155,7 +155,7 @@ TITLES: Final[dict[str, Sentence]] = {
     "accepted_on": say("Accepted on"),
     "accepted_by": say("Accepted by"),
     "redone_runs": say("Towed again"),
-    "note": say("In their words"),
+    "explanation": say("In their words"),
     "known_checks": say("Known then"),
     "newest": say("Counts"),
     "doubted_by": say("Doubted since by"),

@@ -126,7 +126,7 @@ class ListedAcceptances(dy.Schema):
     accepted_on = column.day("day of the acceptance")
     accepted_by = column.text("who accepted the tow")
     redone_runs = column.text("runs that were towed again, as `1,2,b3`", nullable=True)
-    note = column.text("why, in the person's words", nullable=True)
+    explanation = column.text("why, in the person's words", nullable=True)
     known_checks = column.text("codes of checks that marked the tow then", nullable=True)
     path = column.text("file, relative to the archive")
     line = column.count("line in it", least=2)

@@ -21,7 +21,7 @@ def judge(*accepted: tuple[str, dt.date, str | None], flags: dict[str, list[str]
             "accepted_on": day,
             "accepted_by": "SKC",
             "redone_runs": None,
-            "note": None,
+            "explanation": None,
             "known_checks": known,
             "path": "sleeplijsten/beoordelingen.csv",
             "line": line,

@@ -75,7 +75,7 @@ class Acceptance:
             "accepted_on": self.accepted_on.isoformat(),
             "accepted_by": " ".join(self.accepted_by.split()),
             "redone_runs": ",".join(split_runs(self.redone_runs.strip())),
-            "note": " ".join(self.note.split()),
+            "explanation": " ".join(self.note.split()),
             "known_checks": ", ".join(self.known_checks),
         }
 

@@ -164,7 +164,7 @@ ACCEPTANCES: Final = ListKind(
         Column("accepted_on", "datum"),
         Column("accepted_by", "goedgekeurd door"),
         Column("redone_runs", "runs overgedaan", required=False),
-        Column("note", "toelichting", required=False),
+        Column("explanation", "toelichting", required=False),
         Column("known_checks", "bevindingen", required=False),
     ),
 )

@@ -19,7 +19,10 @@ from warehouse.archive.acceptance import Acceptance, compose_line
 LIST = "sleeplijsten/beoordelingen.csv"
 HEADER = "sleep_id;datum;goedgekeurd door;runs overgedaan;toelichting;bevindingen\n"
 GOOD = "2014-001;2014-03-01;J. de Vries;2,5;scheef gestuurd;heavier_after\n"
-READ = ("tow_id", "accepted_on", "accepted_by", "redone_runs", "note", "known_checks", "line")
+READ = (
+    *("tow_id", "accepted_on", "accepted_by", "redone_runs", "explanation", "known_checks"),
+    "line",
+)
 ACCEPTANCE = Acceptance(
     tow_id="2014-001",
     towed_on=dt.date(2014, 3, 1),
@@ -323,6 +326,16 @@ def test_a_folder_that_is_read_only_is_named(archive):
     (archive.root / LIST).parent.chmod(0o555)
     with pytest.raises(UnavailableError, match="cannot be written"):
         line.write()
+
+
+def test_a_folder_that_is_gone_is_named_and_nothing_is_left_behind(archive):
+    line = compose_line(archive.root, ACCEPTANCE)
+    folder = (archive.root / LIST).parent
+    folder.rename(archive.root / "weg")
+    folder.write_text("")
+    with pytest.raises(UnavailableError, match="cannot be written"):
+        line.write()
+    assert folder.read_text() == ""
 
 
 def test_a_list_outside_the_archive_is_not_written(archive, tmp_path):
