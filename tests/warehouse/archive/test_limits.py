@@ -51,9 +51,15 @@ def cells_of(text):
 LISTS = {kind.pattern: (kind, cells_of(text)) for kind, text in TEXTS.items()}
 
 
+def has_numbers(kind):
+    """Whether a list has a column with limits; one of names, days and words has none."""
+    declared = kind.table.columns()
+    return any(declared[c.key].dtype.is_numeric() for c in kind.columns if c.key in declared)
+
+
 def test_every_kind_of_list_is_tried():
     assert {kind.pattern for kind, _ in LISTS.values()} == {
-        k.pattern for k in list_kinds.LIST_KINDS
+        k.pattern for k in list_kinds.LIST_KINDS if has_numbers(k)
     }
 
 
