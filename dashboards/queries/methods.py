@@ -10,10 +10,9 @@ from dashboards.queries.boats import NEGLIGIBLE_CHANGE
 from dashboards.queries.results import Data, Results
 from pipeline.messages import LANGUAGES
 from pipeline.method.definition import COMPLETE, Method
-from pipeline.method.options import Steps, find_basis
+from pipeline.method.options import START, STEP_ORDER, Steps, find_basis
 from pipeline.method.variant import Difference, differences
 from pipeline.register.register import STUDIED_METHOD
-from pipeline.studies.ladder import START, STEP_ORDER
 from pipeline.tables.row import Row
 from warehouse.queries.views import curve_figure
 from warehouse.store.methods import KnownMethods

@@ -12,12 +12,9 @@ import polars as pl
 from dashboards.addresses import boat_path
 from dashboards.queries.pages import name_ends
 from dashboards.queries.results import Data, Results
-from pipeline.consistency.types import QUANTITIES, TERM_NAMES
+from pipeline.tables.keys import QUANTITIES, TERM_NAMES
 from pipeline.tables.row import Row
 from warehouse.queries.types import find_type_differences, read_type_facts
-
-QUANTITY_ORDER: Final = tuple(quantity.name for quantity in QUANTITIES)
-"""Quantities in the order in which they are told."""
 
 DRAWN: Final = {
     "b_weight": ("b_m_s", "weight_kg"),
@@ -87,8 +84,9 @@ def _read_consistency(results: Results, boat_type: str, methods: Sequence[str]) 
     for row in rows:
         for term in TERM_NAMES.values():
             row[f"{term}_decimals"] = choose_decimals(row, term)
-    order = {name: place for place, name in enumerate(QUANTITY_ORDER)}
-    return sorted(rows, key=lambda row: (order[row["quantity"]], methods.index(row["method"])))
+    return sorted(
+        rows, key=lambda row: (QUANTITIES.index(row["quantity"]), methods.index(row["method"]))
+    )
 
 
 def choose_decimals(row: Row, term: str) -> int:

@@ -13,7 +13,8 @@ from pipeline.method.definition import Method
 from pipeline.recompute.facts import samples_files
 from pipeline.recompute.results import Recomputed
 from pipeline.register import due, replay
-from pipeline.register.changes import register_changes, steps_of_lines
+from pipeline.register.causes import steps_of_lines
+from pipeline.register.changes import compare_lines
 from pipeline.register.printed import carried_lines
 from pipeline.register.register import (
     CURVE_COLUMNS,
@@ -82,13 +83,16 @@ def register_tables(
     register = pl.concat(drafts)
     ladders = correction_steps.filter(pl.col("position") > 0, from_method=methods[0].name)
     first = drafts[0]
-    parts = (steps_of_lines(first, ladders.filter(to_method=d["method"][0])) for d in drafts[1:])
-    changes = [register_changes(drafts[0], *both) for both in zip(drafts[1:], parts, strict=True)]
+    changes: list[pl.DataFrame] = [RegisterChanges.create_empty()]
+    for draft in drafts[1:]:
+        steps = steps_of_lines(first, ladders.filter(to_method=draft["method"][0]))
+        lines_compared = compare_lines(first, draft, steps)
+        changes.append(lines_compared.select(RegisterChanges.column_names()))
     hashes = {method.name: method.content_hash for method in methods}
     made = {
         "register": register,
         "register_history": pl.concat(histories),
-        "register_changes": pl.concat(changes) if changes else RegisterChanges.create_empty(),
+        "register_changes": pl.concat(changes),
         "lineage": lineage_rows(register, tows, hashes, code_version()),
     }
     with_editions = {
