@@ -12,7 +12,6 @@ from pipeline.register.register import draft_name
 from pipeline.register.replay import RaceRules
 from pipeline.tables.row import Row
 from warehouse.editions.compare import DiffReport, report_with_races
-from warehouse.editions.publish import drafted
 from warehouse.store.editions import Edition, edition_names, read_edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
@@ -48,10 +47,15 @@ def compare(
         return data
     is_of_a_day = as_of is not None or {old, new} & {*published}
     counting = ("valid",) if is_of_a_day else ("valid", "expired")
-    first, second = (
-        side if isinstance(side, Edition) else drafted(store, side, as_of, counting)
-        for side in sides
-    )
+    editions = []
+    for side in sides:
+        if isinstance(side, Edition):
+            editions.append(side)
+            continue
+        from warehouse.editions.publish import drafted  # noqa: PLC0415 - it recomputes tows
+
+        editions.append(drafted(store, side, as_of, counting))
+    first, second = editions
     effect = report_with_races(store, first, second, rules)
     return data | {"effect": effect, "simulated": effect.simulated} | _sum_up(effect)
 

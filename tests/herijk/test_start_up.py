@@ -9,9 +9,6 @@ READING = "warehouse.intake"
 HEAVY = {"dagster", "dataframely", "duckdb", "numpy", "polars", "scipy", "sqlalchemy"}
 WEB = {"starlette", "uvicorn"}
 HEAVY |= {READING} | WEB
-DECLARED = {"dataframely", "sqlalchemy"}
-"""What declares and checks tables; the second comes with the first."""
-
 READS_TABLES = {"duckdb", "numpy", "polars"}
 """What reads finished tables; SciPy and declarations would add a third to each command."""
 
@@ -19,7 +16,7 @@ NEEDED = {
     "herijk.cli.main herijk.cli.options dashboards.terminal pipeline.method.definition": set(),
     "dashboards.document dashboards.queries.boats dashboards.queries.methods": READS_TABLES,
     "dashboards.queries.pages dashboards.queries.types warehouse.queries.reports": READS_TABLES,
-    "warehouse.editions.compare": DECLARED | {"numpy", "polars", "scipy"},
+    "dashboards.queries.comparison warehouse.editions.compare": READS_TABLES,
     "warehouse.editions.lineage": {"numpy", "polars"},
     "assets.rebuild": HEAVY - WEB - {"dagster"},
 }

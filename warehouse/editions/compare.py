@@ -28,17 +28,13 @@ from pipeline.register.changes import compare_lines, largest_first
 from pipeline.register.printed import rebase_printed
 from pipeline.register.register import LINE, TOW_DAY, tow_days
 from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
-from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
-from pipeline.tables.studies import CorrectionSteps
-from warehouse.derive.registers import lines_in_time
+from warehouse.derive.edition_lines import lines_in_time
 from warehouse.editions.inputs import find_same_tows, tables_of_today
 from warehouse.store.editions import CHANGES, Edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
-LADDER: Final = ("tow_id", "position", "step", "factor", "cw_kg_m")
-NO_LADDER: Final = pl.DataFrame(schema={name: dtypes(CorrectionSteps)[name] for name in LADDER})
 LARGEST: Final = 10
 
 
@@ -102,20 +98,22 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
     From print it begins at the method that was in force when the register was printed.
     """
-    if new.method is None or old.manifest.method_hash == new.manifest.method_hash:
-        return NO_LADDER
-    from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
+    # What may recompute tows is imported here: most comparisons are read as they were published.
+    from pipeline.studies.ladder import ladder  # noqa: PLC0415
+    from pipeline.tables.studies import CorrectionSteps  # noqa: PLC0415
+    from warehouse.intake import seasons as intake  # noqa: PLC0415
 
+    no_ladder = CorrectionSteps.create_empty()
+    if new.method is None or old.manifest.method_hash == new.manifest.method_hash:
+        return no_ladder
     today = tables_of_today(store)
     there = pl.col("tow_id").is_in(list(find_same_tows(new.tables, today)))
     tows, runs = (table.filter(there) for table in today.values())
     if tows.is_empty():
-        return NO_LADDER
-    from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
-
+        return no_ladder
     start = old.method or _method_in_print(store, old)
     if start is None:
-        return NO_LADDER
+        return no_ladder
     blocks = stack_blocks(intake.all_blocks(store), runs)
     before = old.tables.get("tow_instruments")
     after = new.tables.get("tow_instruments")
