@@ -28,6 +28,7 @@ from pipeline.messages import say
 from pipeline.method.definition import Method
 from pipeline.method.reading import parse_method
 from pipeline.register.register import add_empty_thwart
+from warehouse.store.code import code_version
 from warehouse.store.files import TEMPORARY_PREFIX, write_folder_beside
 from warehouse.store.store import Store
 
@@ -259,9 +260,10 @@ def read_edition(store: Store, edition: str) -> Edition:
     manifest = read_manifest(path)
     names = [name.removesuffix(PARQUET) for name in manifest.files if name.endswith(PARQUET)]
     tables = {name: read_table(path, name) for name in names}
-    for name in OUTGROWN:
-        if name in tables:
-            tables[name] = _add_later_columns(name, tables[name])
+    if manifest.code_version != code_version():  # no new column without code that computes it
+        for name in OUTGROWN:
+            if name in tables:
+                tables[name] = _add_later_columns(name, tables[name])
     method = None
     if manifest.kind == "recomputed":
         text = (path / METHOD).read_text(encoding="utf-8")
@@ -305,7 +307,7 @@ def read_table(path: Path, name: str) -> pl.DataFrame:
 
 def _add_later_columns(name: str, frame: pl.DataFrame) -> pl.DataFrame:
     """Add the columns that a table got since an edition was made, empty."""
-    from pipeline.tables.schemas import TABLES  # noqa: PLC0415 - for editions alone
+    from pipeline.tables.schemas import TABLES  # noqa: PLC0415 - for older editions alone
 
     missing = []
     for column, declared in TABLES[name].columns().items():
