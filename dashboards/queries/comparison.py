@@ -34,13 +34,14 @@ def compare(
         HerijkError: there is no such method or edition, or it cannot be computed.
     """
     known, published = KnownMethods.from_store(store), edition_names(store)
-    sides = [
-        read_edition(store, name)
-        if name in published
-        else known.named(name.removeprefix(draft_name("")))
-        for name in (old, new)
-    ]
-    before, after = (side.method if isinstance(side, Edition) else side for side in sides)
+    sides = []
+    for name in (old, new):
+        is_published = name in published
+        method_name = name.removeprefix(draft_name(""))
+        sides.append(read_edition(store, name) if is_published else known.named(method_name))
+    old_side, new_side = sides
+    before = old_side.method if isinstance(old_side, Edition) else old_side
+    after = new_side.method if isinstance(new_side, Edition) else new_side
     options = [] if before is None or after is None else list(differences(after, before))
     data: Data = {"old": old, "new": new, "options": options, "effect": None}
     if not {old, new} <= {*published} and store.read_fingerprint("tows") is None:
