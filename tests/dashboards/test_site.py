@@ -125,11 +125,10 @@ def rows_of(html):
 def tables(page):
     """The tables of a page: titles, and rows with whether each is hidden and its cells."""
     text = page.read_text("utf-8")
-    for table in re.findall(r'<div class="table">.*?</table>', text, re.DOTALL):
+    for table in re.findall(r'<div class="table".*?</table>', text, re.DOTALL):
         head, body = re.search(r"<thead>(.*?)</thead>(.*)", table, re.DOTALL).groups()
         titles = [
-            re.sub(r"<[^>]+>|[\u00ad\u200b]", "", cell).strip()
-            for cell in re.findall(r"<th .*?</th>", head, re.DOTALL)
+            re.sub(r"^[^>]*>|[\u00ad\u200b]", "", cell).strip() for cell in head.split("<th")[1:]
         ]
         yield titles, list(rows_of(body))
 
@@ -194,9 +193,7 @@ def test_a_column_without_anything_in_it_is_not_shown():
         {"n": [0, 0], "size": [None, None], "slow": [False, True], "name": ["", ""]}
     )
     shown = Document(Language("en")).table(frame, "n size slow name")
-    assert re.findall(r"<button type=\"button\">(.*?)</button></th>", shown) == [
-        "n", "Too little power",
-    ]  # fmt: skip
+    assert re.findall(r"<th(?: [^>]*)?>([^<]*)", shown) == ["n", "Too little power"]
     assert Document(Language("en")).table(frame.clear(), "n size") == ""
 
 
