@@ -66,7 +66,7 @@ from herijk.cli.main import app, main
 
 @click.command()
 def ask():
-    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGTERM)).start()
+    threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGTERM)).start()
     duckdb.sql("SELECT count(*) FROM range(100000000000) WHERE range % 7 = 3").fetchall()
 
 app.add_command(ask)
@@ -80,7 +80,7 @@ def test_a_query_that_is_stopped_is_no_unexpected_error():
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert run.returncode == 130
-    assert run.stderr.startswith("herijk: stopped as requested.")
+    assert run.stderr.lstrip().startswith("herijk: stopped as requested.")
 
 
 def test_what_systemd_stops_says_so(tmp_path: Path):
