@@ -18,6 +18,9 @@ from warehouse.archive.columns import Column
 REMARK: Final = "remark"
 """A column that is not read: whatever is in it."""
 
+READ_APART: Final = frozenset({"file", "second_file", "use_runs", REMARK})
+"""Columns that the table of a list does not hold: they become other columns or runs."""
+
 
 @dataclass(frozen=True)
 class ListKind:
@@ -41,6 +44,20 @@ class ListKind:
     columns: tuple[Column, ...]
     about: str = ""
     spare: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        """Refuse a column whose values the table could not hold: they would be lost.
+
+        Raises:
+            LookupError: a column is neither in `table` nor in `READ_APART`.
+        """
+        known = {*self.table.column_names(), *READ_APART}
+        lost = [column.key for column in self.columns if column.key not in known]
+        if lost:
+            raise LookupError(
+                f"the table {self.table.__name__} has no column {', '.join(lost)}: declare it in "
+                "`pipeline/tables/`, or name it in `READ_APART` if something else is made of it."
+            )
 
     def header(self, key: str) -> str:
         """Return the header of a column with its unit."""
