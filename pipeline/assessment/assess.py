@@ -23,6 +23,7 @@ from pipeline.assessment.comparisons import (
     doubt_seasons,
     estimate_log_slopes,
 )
+from pipeline.assessment.currents import CANNOT_BE_TOLD, CHANGED
 from pipeline.assessment.run_measures import summarize_runs
 from pipeline.choice import SAME_SHARE
 from pipeline.quantiles import MAD_TO_SD
@@ -41,8 +42,21 @@ HALF_STEP_RATIO: Final = pl.max_horizontal(
 of speed counts twice. That of a GPS counts only where it calibrates the tow."""
 
 
+CLEAR_CHANGE: Final = (
+    pl.when(current_verdict=CHANGED)
+    .then(pl.col("current_change_m_s").abs())
+    .when(pl.col("current_verdict") != CANNOT_BE_TOLD)
+    .then(0.0)
+)
+"""Change of the current from out to back [m/s]; 0 where chance explains it."""
+
+
 def assess(
-    curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
+    curves: pl.DataFrame,
+    run_points: pl.DataFrame,
+    tows: pl.DataFrame,
+    diagnosis: pl.DataFrame,
+    currents: pl.DataFrame,
 ) -> pl.DataFrame:
     """Return every check of every tow with what was observed and what it is compared with.
 
@@ -50,6 +64,7 @@ def assess(
         curves, run_points: the tables of one method, curves without `status` and `flags`.
         tows: `Tows.frame`, with what is expected of the water.
         diagnosis: rows of `season_diagnosis` of that method.
+        currents: rows of `tow_currents` of that method.
 
     Returns:
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
@@ -63,6 +78,7 @@ def assess(
         runs,
         doubt_seasons(curves, tows, diagnosis),
         estimate_log_slopes(curves, run_points),
+        currents.select("tow_id", current_change_m_s=CLEAR_CHANGE),
         compare_with_previous(boats, curves, diagnosis),
         compare_with_best_estimate(curves),
         compare_with_season_and_type(boats),

@@ -56,6 +56,9 @@ POWER_W: Final = ({"H": 70.0, "D": 40.0}, {"H": 90.0, "D": 55.0})
 WAYS_LIMIT: Final = 0.05
 """Least difference of Cw out from Cw back that is marked; more where all tows of an archive differ
 (`assess`)."""
+MIN_CURRENT_CHANGE_M_S: Final = 0.1
+"""Change of the current from out to back that matters: 2 % of the calibrated speed, and so 4 to 5 %
+of Cw (inferred)."""
 ROWER_KG: Final = ({"H": 81.0, "D": 64.0}, {"H": 114.0, "D": 90.0})
 
 
@@ -81,6 +84,14 @@ CHECKS: Final = (
     ),
     Check("unusual_calibration", "calibration_factor", say("unusual calibration"), 0.98, 1.02),
     Check("log_not_linear", "log_slope", say("log not in proportion"), -0.015, 0.015),
+    Check(
+        "current_changed",
+        "current_change_m_s",
+        say("current changed, or log read otherwise"),
+        None,
+        MIN_CURRENT_CHANGE_M_S,
+        unit="m/s",
+    ),
     # The samples beside all other tows
     _make_plausibility_check("force_not_plausible", say("force cannot be right")),
     _make_plausibility_check("wind_not_plausible", say("wind cannot be right")),

@@ -37,6 +37,7 @@ JUDGED_BY: Final[dict[str, tuple[Rule, Verdict]]] = {
     "runs_set_aside": ("no_malfunction", "tow_again"),
     "unusual_calibration": ("no_malfunction", "look"),
     "log_not_linear": ("no_malfunction", "look"),
+    "current_changed": ("plausible", "look"),
     "season_in_doubt": ("no_malfunction", "look"),
     "coarse_readings": ("no_malfunction", "look"),
     "log2_differs": ("no_malfunction", "look"),

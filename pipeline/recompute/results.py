@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.assessment.assess import add_status, assess
+from pipeline.assessment.currents import estimate_currents
 from pipeline.assessment.repeated_runs import choose_repeated_runs
 from pipeline.method.definition import Method
 from pipeline.method.options import Steps
@@ -64,6 +65,7 @@ class Recomputed:
     assessments: pl.DataFrame
     uncertainty_budget: pl.DataFrame
     curve_points: pl.DataFrame
+    tow_currents: pl.DataFrame
     season_links: pl.DataFrame
     season_diagnosis: pl.DataFrame
     tow_instruments: pl.DataFrame
@@ -94,7 +96,8 @@ def build_tables(
     curves = named(_make_curves(c, bounds.filter(speed_ratio=DECLARED), pooled))
     curves = add_best_estimates(curves, estimated, at_v0, declared_inputs)
     diagnosis = _join_diagnoses(estimated, c)
-    assessments = assess(curves, run_points, c.tows.frame, diagnosis)
+    currents = estimate_currents(curves, run_points)
+    assessments = assess(curves, run_points, c.tows.frame, diagnosis, currents)
     rejecting = [
         (season, check)
         for season in c.tows.frame["season"].unique().sort()
@@ -111,6 +114,7 @@ def build_tables(
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
         curve_points=named(_make_curve_points(inputs, bounds)) if with_bands else pl.DataFrame(),
+        tow_currents=currents,
         season_diagnosis=named(diagnosis),
         **{table: named(rows) for table, rows in _make_tables_of_all_tows(estimated).items()},
         factors=estimated,

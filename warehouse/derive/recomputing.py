@@ -29,7 +29,7 @@ from warehouse.store.unforeseen import (
 METHOD_TABLES: Final = (
     "run_points", "curves", "log_factors", "season_links",
     "season_diagnosis", "tow_instruments", "best_estimate_weights", "uncertainty_budget",
-    "curve_points", "assessments", "ensemble",
+    "curve_points", "tow_currents", "assessments", "ensemble",
 )  # fmt: skip
 """The tables of all tows under a method."""
 
