@@ -189,13 +189,12 @@ def _add_other_answers(error: DefectiveHeaderError, profile: SeasonProfile) -> D
 def _find_possible_gps(names: Sequence[str], profile: SeasonProfile) -> list[str]:
     """Return the headers that are no known column and have the unit of a speed, or none."""
     known = fold_names(profile.columns)
-    if fold(next(c.header for c in profile.columns if c.key == "gps")) in {
-        split_header(name)[0] for name in names
-    }:
-        return []
+    gps_header = next(column.header for column in profile.columns if column.key == "gps")
     possible = []
     for header in names:
         name, unit = split_header(header)
+        if name == fold(gps_header):
+            return []
         is_known = name in known or name in map(fold, profile.ignore)
         is_speed = unit is None or find_unit("speed", unit) is not None
         if name and not is_known and is_speed:
@@ -449,10 +448,6 @@ def _convert_times(
     )
 
 
-def _ask_time(profile: SeasonProfile) -> tuple[str, ...]:
-    return profile.ask("units.time"), profile.ask("absent", '["?"]')
-
-
 # Parquet
 
 
@@ -527,8 +522,8 @@ def _read_tdms(path: Path, profile: SeasonProfile, header_only: bool = False) ->
         frames.append(frame)
     if header_only:
         return SampleTable(pl.DataFrame(), columns)
-    if run_columns := {"run": FoundColumn(-1, "run")} if "run" not in columns else {}:
-        columns = columns | run_columns
+    if "run" not in columns:
+        columns = columns | {"run": FoundColumn(-1, "run")}
     shared = [key for key in columns if all(key in frame.columns for frame in frames)]
     return SampleTable(pl.concat(frame.select(shared) for frame in frames), columns)
 
@@ -567,11 +562,14 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
             names of the groups are in another order than the groups.
     """
     wanted = fold_names(profile.columns)
+    run_header = fold(next(column.header for column in profile.columns if column.key == "run"))
     with_channels = []
+    has_run_channel = False
     for group in groups:
-        names_of_channels = {split_header(channel.name)[0] for channel in group.channels()}
-        if len(names_of_channels & wanted) > 1:
+        channel_names = {split_header(channel.name)[0] for channel in group.channels()}
+        if len(channel_names & wanted) > 1:
             with_channels.append(group)
+            has_run_channel = has_run_channel or run_header in channel_names
     names = [group.name for group in with_channels]
     if profile.groups:
         missing = [name for name in profile.groups if name not in names]
@@ -583,10 +581,7 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
             )
         by_name = dict(zip(names, with_channels, strict=True))
         return [(run, by_name[name]) for run, name in enumerate(profile.groups, start=1)]
-    run_header = next(c.header for c in profile.columns if c.key == "run")
-    if len(with_channels) == 1 and fold(run_header) in {
-        split_header(channel.name)[0] for channel in with_channels[0].channels()
-    }:
+    if len(with_channels) == 1 and has_run_channel:
         return [(None, with_channels[0])]
     if not with_channels:
         return [(1, group) for group in groups[:1]]  # what is missing is told of the first

@@ -58,7 +58,10 @@ def list_gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFra
         if tow_id in gross:
             shift = gross[tow_id]
             code = f"{_SENSOR[shift.quantity]}_not_plausible"
-            faults.append(Fault(path, tow_id, None, code, _sentence(shift), lost="tow"))
+            fault = Fault(
+                path=path, tow_id=tow_id, reason_code=code, message=_sentence(shift), lost="tow"
+            )
+            faults.append(fault)
     return fault_frame(faults)
 
 

@@ -85,11 +85,10 @@ def _faults(same: pl.DataFrame) -> Iterator[Fault]:
         if of_one and row["run"] > SECOND_FILE_OFFSET:
             continue
         yield Fault(
-            row["samples_path"],
-            row["tow_id"],
-            None,
-            "duplicate_tow" if of_one else "samples_listed_twice",
-            say(
+            path=row["samples_path"],
+            tow_id=row["tow_id"],
+            reason_code="duplicate_tow" if of_one else "samples_listed_twice",
+            message=say(
                 "Run {} holds exactly the samples of tow {} ({}) of {} {}{}, packed or "
                 "written otherwise.",
                 row["run"] % SECOND_FILE_OFFSET,

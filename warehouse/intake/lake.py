@@ -148,7 +148,12 @@ def _bring_in(
             raise
         note(store.root, tow["tow_id"], format_traceback(error))
         message = sentence(tow["tow_id"], shorten_error(error))
-        fault = Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
+        fault = Fault(
+            path=tow["samples_path"],
+            tow_id=tow["tow_id"],
+            reason_code=UNFORESEEN,
+            message=message,
+        )
     else:
         return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}
     found = fault.to_row()
