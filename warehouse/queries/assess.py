@@ -224,7 +224,7 @@ def propose_use_of_runs(assessment: pl.DataFrame, planned: pl.DataFrame) -> list
     candidates = {row["runs"][0]: row["instead_of"] for row in extra.iter_rows(named=True)}
     ways: list[dict[int, int]] = []
     if len(candidates) == 1:
-        (run, alike), *_ = candidates.items()
+        run, alike = next(iter(candidates.items()))
         wrong = [one for one in alike if one in redo]
         ways = [{one: run} for one in (wrong if len(wrong) == 1 else alike)]
     else:

@@ -167,12 +167,12 @@ def count_statuses(store: Store) -> Row:
     method = default_method(store.read("methods")["method"].to_list())
     statuses = store.read("curves", method, columns=["status"])["status"]
     counts = {name: int((statuses == name).sum()) for name in STATUSES}
-    return {"method": method, **counts}
+    return {"method": method} | counts
 
 
 def _tows(was: Tables, now: Tables) -> pl.DataFrame:
     """Return tows that came, went, or are made from other files or facts."""
-    facts = ("tow_id", "fsn_no", "season", *FILES)
+    facts = ("tow_id", "fsn_no", "season") + FILES
     pairs = (
         was["tows"]
         .select(facts)
@@ -195,21 +195,22 @@ def _tows(was: Tables, now: Tables) -> pl.DataFrame:
         .then(pl.lit("list"))
         .otherwise(pl.lit("samples"))
     )
-    of_now = (pl.coalesce(f"{name}_right", name).alias(name) for name in ("fsn_no", "season"))
-    return pairs.select("tow_id", *of_now, what.alias("what")).sort("tow_id")
+    return pairs.select(
+        "tow_id",
+        fsn_no=pl.coalesce("fsn_no_right", "fsn_no"),
+        season=pl.coalesce("season_right", "season"),
+        what=what,
+    ).sort("tow_id")
 
 
 def _came_and_went(
     was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str], went: str
 ) -> pl.DataFrame:
     """Return the rows that are new and those that are gone, by their key; `what` says which."""
-    parts = ((now, was, "new"), (was, now, went))
-    return pl.concat(
-        mine.select(key)
-        .join(other, on=key, how="anti", nulls_equal=True)
-        .with_columns(pl.lit(what).alias("what"))
-        for mine, other, what in parts
-    ).sort("what", *key)
+    new = now.select(key).join(was, on=key, how="anti", nulls_equal=True)
+    gone = was.select(key).join(now, on=key, how="anti", nulls_equal=True)
+    both = pl.concat([new.with_columns(what=pl.lit("new")), gone.with_columns(what=pl.lit(went))])
+    return both.sort("what", pl.col(key))
 
 
 def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
@@ -226,7 +227,8 @@ def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
     same = find_same_tows(was, now)
     others = any(tables["tows"].height > len(same) for tables in (was, now))
     code = not was["about"]["code_version"].equals(now["about"]["code_version"])
-    hashes = [dict(t["methods"].select("method", "content_hash").rows()) for t in (was, now)]
+    old_hashes = dict(was["methods"].select("method", "content_hash").iter_rows())
+    new_hashes = dict(now["methods"].select("method", "content_hash").iter_rows())
     measured = {"basis": pl.lit(MEASURED), INPUTS_HASH: pl.lit(None, pl.String)}
     changed = []
     for method in now["methods"]["method"]:
@@ -235,7 +237,7 @@ def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
         new = now["register"].filter(edition=draft)
         if old.is_empty() or new.is_empty():
             continue
-        redefined = hashes[0].get(method) != hashes[1].get(method)
+        redefined = old_hashes.get(method) != new_hashes.get(method)
         old = old.with_columns(**measured)
         new = new.with_columns(**measured)
         ground = grounds(old, new, same, others=others, method=redefined, code=code)

@@ -19,7 +19,7 @@ from pipeline.studies.summaries import season_changes
 from warehouse.queries.history import Draft
 from warehouse.queries.views import curve_figure
 
-LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
+LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(VALID_RATIO[0], VALID_RATIO[1], 13)})
 """Speeds at which a curve is drawn / declared speed."""
 
 TYPE_COLUMNS: Final = (
@@ -52,10 +52,12 @@ class Scenario:
         lines = self.register_lines
         changed = lines.filter(change="changed")
         gain = changed["gain_in_two_hours_s"]
-        kinds = ("same", "changed", "added", "removed")
         return {
             "lines": lines.height,
-            **{kind: lines.filter(change=kind).height for kind in kinds},
+            "same": lines.filter(change="same").height,
+            "changed": changed.height,
+            "added": lines.filter(change="added").height,
+            "removed": lines.filter(change="removed").height,
             "gains": int((gain > 0).sum()),
             "loses": int((gain < 0).sum()),
             "median_ratio": lines["cw_ratio"].median(),
