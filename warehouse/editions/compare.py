@@ -14,7 +14,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
-from pipeline.method.definition import RUNS_ALONE, Method, find_method_in_force
+from pipeline.method.definition import RUNS_ALONE, find_method_in_force
 from pipeline.races.power import compute_line_cw
 from pipeline.register.changes import (
     NO_FACTOR,
@@ -58,7 +58,7 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     if CHANGES in new.tables and new.manifest.previous == old.manifest.edition:
         return new.tables[CHANGES]
     before, after = _add_printed_tows(old, new), new.register
-    ladder = _ladder(store, old, new)
+    ladder = _compute_ladder(store, old, new)
     printed = _explain_printed_lines(before, ladder, new) if old.method is None else NO_PARTS
     steps = steps_of_lines(before, ladder.filter(pl.col("position") > 0))
     parts = pl.concat([printed, steps], how="vertical_relaxed")
@@ -84,7 +84,7 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         )
         lines = lines.join(facts, on=LINE, how="left", maintain_order="left")
     name = pl.coalesce("new_name", "old_name").alias("name")
-    return lines.sort(LINE).select(*beside, name, "old_status", "new_status")
+    return lines.sort(LINE).select(pl.col(beside), name, "old_status", "new_status")
 
 
 def _add_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
@@ -100,7 +100,7 @@ def _add_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
     return old.register.drop("tow_id").join(once, on=TOW_DAY, how="left", maintain_order="left")
 
 
-def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+def _compute_ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """Apply the steps from the old method to the new one, one after another, to the same tows.
 
     From print it begins at the method that was in force when the register was printed.
@@ -111,26 +111,21 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
     today = tables_of_today(store)
     there = pl.col("tow_id").is_in(list(find_same_tows(new.tables, today)))
-    tows, runs = (table.filter(there) for table in today.values())
-    if tows.is_empty():
+    tows, runs = today["tows"].filter(there), today["tow_runs"].filter(there)
+    start = old.method
+    if start is None:
+        printed_in = old.manifest.printed_in or old.manifest.valid_from.year
+        known = KnownMethods.from_store(store)
+        start = find_method_in_force(printed_in, [known.get(name) for name in known.names])
+    if tows.is_empty() or start is None:
         return NO_LADDER
     from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
 
-    start = old.method or _method_in_print(store, old)
-    if start is None:
-        return NO_LADDER
     blocks = stack_blocks(intake.all_blocks(store), runs)
     before = old.tables.get("tow_instruments")
     after = new.tables.get("tow_instruments")
     is_known = after is not None and (before is not None or old.method is None)
     return ladder(start, new.method, tows, blocks, (before, after) if is_known else None)
-
-
-def _method_in_print(store: Store, printed: Edition) -> Method | None:
-    """Return the method in force when an edition was printed; None where no method says so."""
-    printed_in = printed.manifest.printed_in or printed.manifest.valid_from.year
-    known = KnownMethods.from_store(store)
-    return find_method_in_force(printed_in, [known.get(name) for name in known.names])
 
 
 def _explain_printed_lines(
@@ -193,11 +188,11 @@ def grounds(
     Returns:
         `LINE` and its `ground`.
     """
-    facts = (*LINE, "tow_id", "tow_date", INPUTS_HASH, "basis")
+    facts = LINE + ("tow_id", "tow_date", INPUTS_HASH, "basis")
     pairs = old.select(facts).join(
         new.select(facts), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
     )
-    is_rebased = {tuple(line) for line in rebased.select(LINE).rows()}
+    rebased_lines = set(rebased.select(LINE).rows())
     named = []
     for pair in pairs.iter_rows(named=True):
         line = tuple(pair[name] for name in LINE)
@@ -207,7 +202,7 @@ def grounds(
             != (pair["tow_date_new" if is_print else "tow_id_new"])
         )
         is_other_input = pair["tow_id_new"] not in same
-        if line in is_rebased or not (method or is_print):
+        if line in rebased_lines or not (method or is_print):
             if is_other_tow:
                 ground = "tow"
             elif is_print:
@@ -218,7 +213,7 @@ def grounds(
             ground = "printed_and_tow" if is_other_tow else "printed"
         else:
             ground = "unseparated" if is_other_tow or is_other_input or code else "method"
-        named.append((*line, ground))
+        named.append(line + (ground,))
     schema = {name: old.schema[name] for name in LINE} | {"ground": pl.String()}
     return pl.DataFrame(named, schema=schema, orient="row")
 
@@ -363,6 +358,10 @@ def _rows(lines: pl.DataFrame) -> list[Row]:
     """Return lines as rows, each with the causes that moved it."""
     rows = lines.with_columns(pl.col("causes").str.json_decode(pl.List(CAUSE))).to_dicts()
     for row in rows:
-        moved = [cause for cause in row["causes"] if abs(cause["factor"] - 1.0) > NO_FACTOR]
-        row["causes"] = [{k: v for k, v in cause.items() if v is not None} for cause in moved]
+        moved = []
+        for cause in row["causes"]:
+            known = {name: value for name, value in cause.items() if value is not None}
+            if abs(cause["factor"] - 1.0) > NO_FACTOR:
+                moved.append(known)
+        row["causes"] = moved
     return rows
