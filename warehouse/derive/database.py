@@ -31,26 +31,20 @@ STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.1 reads the file; the newest form would shut out programs of last year."""
 
 
-def _meaning(schema: type[dy.Schema]) -> str:
-    """Return the meaning of a table, with its key."""
+def _describe_table(schema: type[dy.Schema]) -> tuple[str, dict[str, str]]:
+    """Return the meaning of a table with its key, and that of its columns, each with its unit."""
     key = ", ".join(schema.primary_key())
-    return f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
-
-
-def _column_meanings(schema: type[dy.Schema]) -> dict[str, str]:
-    """Return the meaning of the columns of a table, each with its unit."""
-    meanings = {}
+    meaning = f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
+    columns = {}
     for name, column in schema.columns().items():
         unit = (column.metadata or {}).get("unit")
         if unit is None and column.dtype.is_numeric():
             unit = find_number_form(name).unit
-        meanings[name] = f"{column.description} [{unit}]" if unit else str(column.description)
-    return meanings
+        columns[name] = f"{column.description} [{unit}]" if unit else str(column.description)
+    return meaning, columns
 
 
-MEANINGS: Final = {
-    name: (_meaning(schema), _column_meanings(schema)) for name, schema in (TABLES | ABOUT).items()
-}
+MEANINGS: Final = {name: _describe_table(schema) for name, schema in (TABLES | ABOUT).items()}
 """What the file says of its tables and their columns."""
 
 
@@ -115,10 +109,8 @@ def _add_table(connection: duckdb.DuckDBPyConnection, name: str, frame: pl.DataF
     connection.unregister("frame")
     meaning, columns = MEANINGS.get(name, ("", {}))
     comments = [f"COMMENT ON TABLE {place} IS {_quoted(meaning)}"]
-    comments += (
-        f'COMMENT ON COLUMN {place}."{column}" IS {_quoted(text)}'
-        for column, text in columns.items()
-    )
+    for column, text in columns.items():
+        comments.append(f'COMMENT ON COLUMN {place}."{column}" IS {_quoted(text)}')
     connection.execute(";".join(comments))  # one by one they take half as long again
 
 
@@ -140,11 +132,10 @@ def _quoted(text: str) -> str:
 
 def _about(about_archive: pl.DataFrame) -> pl.DataFrame:
     archive = about_archive.row(0, named=True)
-    about = {
-        "simulated": str(archive["simulated"]).lower(),
-        "code_version": code_version(),
-        **{key: archive[key] for key in ("publisher", "licence") if archive[key]},
-    }
+    about = {"simulated": str(archive["simulated"]).lower(), "code_version": code_version()}
+    for key in ("publisher", "licence"):
+        if archive[key]:
+            about[key] = archive[key]
     return pl.DataFrame({"key": list(about), "value": list(about.values())})
 
 

@@ -9,7 +9,6 @@ faults and needs these tows for it.
 
 import math
 from collections.abc import Sequence
-from functools import reduce
 from typing import Final
 
 import polars as pl
@@ -127,7 +126,9 @@ def _way_out(shift: Shift) -> str:
             shift.size,
         )
     causes = [say(text, *values) for text, *values in shift.causes]
-    cause = reduce(lambda one, other: say("{} or {}", one, other), causes)
+    cause = causes[0]
+    for other in causes[1:]:
+        cause = say("{} or {}", cause, other)
     likely = say("It looks like {}: correct the unit in the header, or the scale.", cause)
     if (shift.kind, shift.quantity) != ("tow", "force"):
         return likely

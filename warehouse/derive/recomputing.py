@@ -157,4 +157,4 @@ def _recompute(method: Method, archive: ArchiveRuns, cache: RunCache) -> dict[st
     """Return `METHOD_TABLES` of one method."""
     runs = stack_blocks(archive.blocks, add_hand_windows(archive.tow_runs, archive.hand_windows))
     made = recompute(method, add_boats(archive.tows, archive.boats), runs, cache)
-    return {**vars(made), "ensemble": members_of(method, made)}
+    return vars(made) | {"ensemble": members_of(method, made)}

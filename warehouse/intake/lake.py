@@ -99,10 +99,12 @@ def all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
         DamagedFileError: samples and blocks of a tow were removed; they are read again.
     """
     sound = index.filter(pl.col("blocks_key").is_not_null()).sort("season", "tow_id")
-    paths = [store.blocks_path(*tow) for tow in sound.select("season", "blocks_key").rows()]
-    if not all(path.exists() for path in paths):
-        raise DamagedFileError(store.table_path("samples"))
-    frames = [read_parquet(path) for path in paths]
+    frames = []
+    for season, blocks_key in sound.select("season", "blocks_key").iter_rows():
+        path = store.blocks_path(season, blocks_key)
+        if not path.exists():
+            raise DamagedFileError(store.table_path("samples"))
+        frames.append(read_parquet(path))
     if not frames:
         return pl.DataFrame(schema=BLOCK_SCHEMA)
     tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
