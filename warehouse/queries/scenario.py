@@ -22,11 +22,6 @@ from warehouse.queries.views import curve_figure
 LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(VALID_RATIO[0], VALID_RATIO[1], 13)})
 """Speeds at which a curve is drawn / declared speed."""
 
-TYPE_COLUMNS: Final = (
-    "method", "fsn_no", "name", "boat_type", "rowers", "crew_class", "tow_id", "season",
-    "weight_kg", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_standard_kg_m",
-)  # fmt: skip
-
 
 @dataclass(frozen=True)
 class Scenario:
