@@ -21,7 +21,8 @@ from warehouse.archive.list_rules import read_published_registers, read_races
 from warehouse.archive.plausibility import judge_samples
 from warehouse.archive.profile import read_profiles
 from warehouse.archive.remedies import REMEDIES
-from warehouse.archive.samples import check_header, read_tow_samples
+from warehouse.archive.sample_files import check_header
+from warehouse.archive.samples import read_tow_samples
 
 SHOWN: Final = 3
 """Places of one cause."""

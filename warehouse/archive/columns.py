@@ -167,6 +167,11 @@ def shorten(text: str) -> str:
     return text[:LONGEST_QUOTE] + ("..." if len(text) > LONGEST_QUOTE else "")
 
 
+def quote_names(names: Iterable[str]) -> str:
+    """Return names in quotation marks with commas between them, each cut as by `shorten`."""
+    return ", ".join(f"'{shorten(name.strip())}'" for name in names)
+
+
 def decode(data: bytes) -> str:
     """Return the text of a file in UTF-8 or UTF-16 (with its mark), or else Windows-1252.
 
@@ -303,7 +308,7 @@ def find_columns(
         said = say(
             "Not found in the header: {names}. Found: {found}.",
             names=", ".join(f"'{column.named}'" for column in missing),
-            found=", ".join(f"'{shorten(cell.strip())}'" for cell in header[:30]),
+            found=quote_names(header[:30]),
         )
         problems.append(_Problem("missing_column", said, [f"columns.{c.key}" for c in missing]))
     if not problems:

@@ -115,6 +115,14 @@ class Judgement:
     runs: list[Run] = field(default_factory=list)
     faults: list[Fault] = field(default_factory=list)
 
+    def has_channels(self, *channels: str) -> bool:
+        """Whether all runs have some channels."""
+        return all(run.channels.keys() >= set(channels) for run in self.runs)
+
+    def typical_median(self, channel: str) -> float:
+        """Return the median over the runs of their median of a channel."""
+        return float(np.median([run.medians[channel] for run in self.runs]))
+
     def lose(
         self,
         run: Run,

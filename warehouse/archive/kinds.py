@@ -42,6 +42,11 @@ class ListKind:
     about: str = ""
     spare: frozenset[str] = frozenset()
 
+    @property
+    def keys(self) -> list[str]:
+        """The keys of its columns, in their order."""
+        return [column.key for column in self.columns]
+
     def header(self, key: str) -> str:
         """Return the header of a column with its unit."""
         return next(column.named for column in self.columns if column.key == key)

@@ -28,6 +28,7 @@ from warehouse.archive.columns import (
     fold_names,
     fold_word,
     list_unknown_headers,
+    quote_names,
     shorten,
     split_header,
     split_line,
@@ -278,9 +279,8 @@ def _check_columns(
             "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or "
             "put it there under ignore. Not used yet: {free}."
         )
-        names = ", ".join(f"'{shorten(header)}'" for header in unknown)
         free = ", ".join(column.header for column in columns if column.key not in places) or "-"
-        said = say(text, names=names, free=free)
+        said = say(text, names=quote_names(unknown), free=free)
         ask = [_ask_header(header) for header in unknown]
         raise DefectiveHeaderError("unknown_column", said, table.line, ask)
     for key, place in places.items():
@@ -302,7 +302,7 @@ def _parse_rows(
 
     Every cell that is wrong leaves a fault; a row is set aside unless the kind can spare the cell.
     """
-    keys = [column.key for column in kind.columns]
+    keys = kind.keys
     frame = _collect_cells(table, places, words, kind)
     needed = []
     for column in kind.columns:
@@ -376,15 +376,14 @@ def _collect_cells(
     last column aside.
     """
     width = len(table.header)
-    keys = [column.key for column in kind.columns]
-    numbers = {column.key for column in kind.columns if _is_number(kind, column.key)}
+    numbers = {key for key in kind.keys if _is_number(kind, key)}
     schema = {"line": pl.Int64, "is_open": pl.Boolean, "fields": pl.Int64, "too_long": pl.String}
-    schema |= dict.fromkeys(keys, pl.String)
+    schema |= dict.fromkeys(kind.keys, pl.String)
     found: dict[str, list[object]] = {name: [] for name in schema}
     for line, row, is_open in table.rows:
         has_more = any(map(str.strip, row[width:]))
         too_long = ""
-        for key in keys:
+        for key in kind.keys:
             index = places[key].index if key in places else width
             cell = row[index].strip() if index < min(len(row), width) else ""
             if len(cell) > MAX_CELL_CHARACTERS:

@@ -117,7 +117,9 @@ def judge_samples(
     judgement.check_left()
     _leave_out_no_wind(judgement)
     _check_whole_tow(judgement)
-    usual_kg_m = _estimate_resistance_kg_m(judgement.runs)
+    # The median over runs, which one faulty run does not move.
+    each_kg_m = [run.medians["force"] / run.intended_m_s**2 for run in judgement.runs]
+    usual_kg_m = abs(float(np.nanmedian(each_kg_m))) if np.isfinite(each_kg_m).any() else np.nan
     for run in judgement.runs:
         leave_out(judgement, run, usual_kg_m)
         if run in judgement.runs:
@@ -261,7 +263,7 @@ def _check_whole_tow(judgement: Judgement) -> None:
     move.
     """
     runs = judgement.runs
-    force_n = float(np.median([run.medians["force"] for run in runs]))
+    force_n = judgement.typical_median("force")
     intended_m_s = float(np.median([run.intended_m_s for run in runs]))
     low, high = USUAL["force"].times(intended_m_s, np.nan)
     if low <= -force_n <= high:
@@ -270,7 +272,7 @@ def _check_whole_tow(judgement: Judgement) -> None:
     _check_exchanged(judgement, intended_m_s)
     _check_held_as_a_fix(judgement)
     _check_against_plan(judgement)
-    ratio = float(np.median([run.medians["log1"] for run in runs])) / intended_m_s
+    ratio = judgement.typical_median("log1") / intended_m_s
     least, most = KM_H_RATIO
     if least <= ratio <= most:
         text = say(
@@ -282,12 +284,14 @@ def _check_whole_tow(judgement: Judgement) -> None:
 
 def _check_held_as_a_fix(judgement: Judgement) -> None:
     """Raise where another channel holds a fix a second, and the GPS moves as a log does."""
-    runs = judgement.runs
+
+    def typical_hz(channel: str) -> float:
+        return float(np.median([run.changes_hz(channel) for run in judgement.runs]))
+
     for key in ("log1", "log2", "wind_speed"):
-        if not all({key, "gps"} <= run.channels.keys() for run in runs):
+        if not judgement.has_channels(key, "gps"):
             continue
-        other_hz = float(np.median([run.changes_hz(key) for run in runs]))
-        gps_hz = float(np.median([run.changes_hz("gps") for run in runs]))
+        other_hz, gps_hz = typical_hz(key), typical_hz("gps")
         least, most = HELD_AS_A_FIX_HZ
         if gps_hz > MOVES_AS_A_LOG_HZ and least < other_hz < most:
             text = say(
@@ -303,7 +307,7 @@ def _check_against_plan(judgement: Judgement) -> None:
     A log follows the intended speeds of the runs, a force their square; wind follows neither.
     """
     for key, wind, power, most in FOLLOWS_PLAN:
-        if not all({key, wind} <= run.channels.keys() for run in judgement.runs):
+        if not judgement.has_channels(key, wind):
             continue
         own = _measure_spread(judgement.runs, key, power)
         other = _measure_spread(judgement.runs, wind, power)
@@ -352,12 +356,6 @@ def _find_implausible(typical: Mapping[str, NDArray[np.floating]], intended_m_s:
 
 
 # Samples
-
-
-def _estimate_resistance_kg_m(runs: list[Run]) -> float:
-    """Return the median over runs of force / speed squared, which one faulty run does not move."""
-    each = [run.medians["force"] / run.intended_m_s**2 for run in runs]
-    return abs(float(np.nanmedian(each))) if np.isfinite(each).any() else np.nan
 
 
 def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:

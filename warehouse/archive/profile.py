@@ -89,6 +89,10 @@ class SeasonProfile:
     groups: tuple[str, ...] = ()
     skip_below_header: int = 0
 
+    def find_header(self, key: str) -> str | None:
+        """Return the header of a column without its unit; None for one that is not looked for."""
+        return next((column.header for column in self.columns if column.key == key), None)
+
     def make_run_optional(self) -> "SeasonProfile":
         """Return the profile of files that need no column `run`."""
         columns = [

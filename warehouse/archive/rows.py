@@ -126,11 +126,15 @@ class Rows:
             per_file: rows of one file may repeat each other; only those of another are copies.
         """
         declared = dtypes(self.kind.table)
-        keys = [column.key for column in self.kind.columns if column.key != REMARK]
-        floats = [key for key in keys if key in declared and declared[key].is_float()]
-        others = [key for key in keys if key not in floats]
+        floats = []
+        others = ["season"]
+        for key in self.kind.keys:
+            if key in declared and declared[key].is_float():
+                floats.append(key)
+            elif key != REMARK:
+                others.append(key)
         # 8.28 km/h and 2.3 m/s are one speed, though their last bits differ.
-        value = pl.struct(pl.col(others), pl.col(floats).round_sig_figs(9), "season")
+        value = pl.struct(pl.col(others), pl.col(floats).round_sig_figs(9))
         nth = pl.int_range(pl.len()).over(value, "path", "sheet") if per_file else pl.lit(0)
         self.frame = self.frame.with_columns(_value=value, _nth=nth)
         self.frame = self.frame.unique(["_value", "_nth"], keep="first", maintain_order=True)
@@ -183,8 +187,8 @@ def cell(key: str) -> pl.Expr:
 def make_empty_rows(kind: ListKind) -> pl.DataFrame:
     """Return the frame of a list without any row."""
     declared = dtypes(kind.table)
-    values = {c.key: declared.get(c.key, pl.String()) for c in kind.columns}
-    cells = pl.Struct({column.key: pl.String for column in kind.columns})
+    values = {key: declared.get(key, pl.String()) for key in kind.keys}
+    cells = pl.Struct(dict.fromkeys(kind.keys, pl.String))
     place: dict[str, pl.DataType] = {
         "path": pl.String(),
         "sheet": pl.String(),

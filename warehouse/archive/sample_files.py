@@ -31,6 +31,7 @@ from warehouse.archive.columns import (
     find_unit,
     fold,
     fold_names,
+    quote_names,
     shorten,
     split_header,
     split_line,
@@ -151,11 +152,8 @@ def _find_known(
 
     Raises where there is no GPS, but a column that may be one: left out, it changes numbers.
     """
-    ask_gps: tuple[str, ...] = ()
-    wants_gps = any(column.key == "gps" for column in profile.columns)
-    possible = _find_possible_gps(names, profile) if wants_gps else []
-    if possible:
-        ask_gps = (profile.ask("columns.gps"),)
+    possible = _find_possible_gps(names, profile)
+    ask_gps = [profile.ask("columns.gps")] if possible else []
     try:
         found = find_columns(names, profile.columns, line, profile.ask, ask_gps)
     except DefectiveHeaderError as error:
@@ -165,7 +163,7 @@ def _find_known(
             "There is no column 'gps', and {names} can be it. Name the one that is, or say that "
             'there is none: absent = ["gps"]. What is neither goes under ignore of the season.'
         )
-        said = say(text, names=", ".join(f"'{shorten(name)}'" for name in possible))
+        said = say(text, names=quote_names(possible))
         raise DefectiveHeaderError("unknown_column", said, line, ask_gps)
     return found
 
@@ -180,16 +178,21 @@ def _add_other_answers(error: DefectiveHeaderError, profile: SeasonProfile) -> D
         )
         said = say(text, header=said)
         ask.append(profile.ask("runs"))
-    if any(f"columns.{key} = " in line for key in ("log2", "wind_speed") for line in ask):
+    if any("columns.log2 = " in line or "columns.wind_speed = " in line for line in ask):
         said = say("{header} What was not on board goes under absent.", header=said)
         ask.append(profile.ask("absent", '["?"]'))
     return DefectiveHeaderError(error.reason_code, said, error.line, ask)
 
 
 def _find_possible_gps(names: Sequence[str], profile: SeasonProfile) -> list[str]:
-    """Return the headers that are no known column and have the unit of a speed, or none."""
+    """Return the headers that are no known column and have the unit of a speed, or none.
+
+    There are none where a GPS is found, or not looked for.
+    """
+    gps_header = profile.find_header("gps")
+    if gps_header is None:
+        return []
     known = fold_names(profile.columns)
-    gps_header = next(column.header for column in profile.columns if column.key == "gps")
     possible = []
     for header in names:
         name, unit = split_header(header)
@@ -512,7 +515,11 @@ def _read_tdms(path: Path, profile: SeasonProfile, header_only: bool = False) ->
     frames, columns = [], {}
     for run, group in _assign_groups(groups, profile):
         channels = group.channels()
-        names = [_build_channel_header(channel) for channel in channels]
+        names = []
+        for channel in channels:
+            unit = channel.properties.get("unit_string")
+            has_own_unit = not unit or "[" in channel.name
+            names.append(channel.name if has_own_unit else f"{channel.name} [{unit}]")
         columns = _find_known(names, profile.leave_out_run() if run else profile)
         if header_only:
             continue
@@ -562,7 +569,7 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
             names of the groups are in another order than the groups.
     """
     wanted = fold_names(profile.columns)
-    run_header = fold(next(column.header for column in profile.columns if column.key == "run"))
+    run_header = fold(profile.find_header("run") or "")
     with_channels = []
     has_run_channel = False
     for group in groups:
@@ -591,15 +598,9 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
         numbers.append(int(digits[-1]) if digits else 0)
     if len(names) > MOST_RUNS or numbers != sorted(numbers):
         text = say("The groups are {names}, and it is not clear which run each of them is.")
-        said = say(text, names=", ".join(f"'{shorten(name)}'" for name in names))
+        said = say(text, names=quote_names(names))
         raise DefectiveHeaderError("unknown_run", said, None, (profile.ask("groups", '["?"]'),))
     return [(run, group) for run, group in enumerate(with_channels, start=1)]
-
-
-def _build_channel_header(channel: Any) -> str:
-    """Return the name of a channel with its unit in brackets, as a header has it."""
-    unit = channel.properties.get("unit_string")
-    return f"{channel.name} [{unit}]" if unit and "[" not in channel.name else str(channel.name)
 
 
 def _read_group(

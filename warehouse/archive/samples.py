@@ -23,9 +23,7 @@ from warehouse.archive.columns import DefectiveHeaderError
 from warehouse.archive.faults import DefectiveFileError, say_at_line
 from warehouse.archive.files import PARTS, resolve_inside
 from warehouse.archive.profile import SeasonProfile
-from warehouse.archive.sample_files import SampleTable, check_header, read_table
-
-__all__ = ["check_header", "find_run_starts", "measure_steps", "read_samples", "read_tow_samples"]
+from warehouse.archive.sample_files import SampleTable, read_table
 
 OUTPUT_NAMES: Final = {
     "run": "run",
@@ -88,6 +86,7 @@ def read_tow_samples(
     files: list[str] = []
     frames: list[pl.DataFrame] = []
     lines: list[LineOf] = []
+    ends: list[int] = []
     defects: RunDefects = {}
     windows = read_windows_text(tow.get("run_windows"))
     for name, numbers, offset in (
@@ -111,17 +110,17 @@ def read_tow_samples(
                 raise DefectiveFileError(
                     error.reason_code, error.message, error.line, path, ask
                 ) from error
-            before = sum(frame.height for frame in frames)
+            before = ends[-1] if ends else 0
             for number, defect in found.items():
                 defects[number + offset] = defect._replace(row=before + defect.row)
             files.append(path)
             frames.append(samples.with_columns(pl.col("run") + pl.lit(offset, pl.Int8)))
             lines.append(line_of)
-    ends = np.cumsum([frame.height for frame in frames])
+            ends.append(before + samples.height)
 
     def find_place(row: int) -> tuple[str, int]:
         part = int(np.searchsorted(ends, row, "right")) if row >= 0 else 0
-        before = int(ends[part - 1]) if part else 0
+        before = ends[part - 1] if part else 0
         return files[part], lines[part](row - before if row >= 0 else row)
 
     return pl.concat(frames), find_place, defects
@@ -316,17 +315,20 @@ def _check_times(
         usual_hz=1 / step.median(),
         average_hz=1 / step.filter(step < MAX_GAP_S).mean(),
     )
+    is_near = (pl.col("usual_hz", "average_hz") / rate_hz - 1).abs() <= RATE_TOLERANCE
+    runs = runs.with_columns(
+        observed_hz=pl.coalesce("average_hz", "usual_hz", 0.0),
+        has_rate=pl.any_horizontal(is_near.fill_null(value=False)),
+    )
     defects: RunDefects = {}
     for found in runs.iter_rows(named=True):
         number = int(found["run"])
-        known = [rate for rate in (found["usual_hz"], found["average_hz"]) if rate]
-        observed_hz = known[-1] if known else 0.0
         if found["turn"] is not None:
             said = say("its times jump back by {seconds:.6g} s", seconds=found["back_s"])
             defects[number] = RunDefect("bad_time", said, found["turn"])
-        elif not any(abs(rate / rate_hz - 1) <= RATE_TOLERANCE for rate in known):
+        elif not found["has_rate"]:
             text = say("it has {observed:.6g} samples per second by its times, and not {rate:.6g}")
-            said = say(text, observed=observed_hz, rate=rate_hz)
+            said = say(text, observed=found["observed_hz"], rate=rate_hz)
             defects[number] = RunDefect("bad_time", said, found["row"])
     is_other_rate = runs["turn"].is_null().all()
     if is_other_rate and len(defects) == runs.height:
@@ -337,8 +339,7 @@ def _check_times(
             "unit."
         )
         first = runs.row(0, named=True)
-        rate = [hz for hz in (first["usual_hz"], first["average_hz"]) if hz]
-        said = say(text, run=first["run"], observed=rate[-1] if rate else 0.0, rate=rate_hz)
+        said = say(text, run=first["run"], observed=first["observed_hz"], rate=rate_hz)
         line = line_of(first["row"])
         ask = (profile.ask("sample_rate_hz"), profile.ask("units.time"))
         raise DefectiveHeaderError("bad_time", say_at_line(line, said), line, ask)

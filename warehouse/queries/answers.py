@@ -188,7 +188,13 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         .join(logs, on=["method", "season"], how="left", maintain_order="left")
         .join(predicted, on=["method", "tow_id"], how="left", maintain_order="left")
     )
-    return _add_places(joined)
+    like = ("boat_type", "crew_class")
+    old_rank, new_rank = pl.col("old_speed_rank"), pl.col("new_speed_rank")
+    return joined.with_columns(
+        old_type_place=old_rank.rank("min").over(like).cast(pl.Int32),
+        new_type_place=new_rank.rank("min").over(like).cast(pl.Int32),
+        type_size=new_rank.count().over(like).cast(pl.Int32),
+    )
 
 
 _Tables = Callable[[str], pl.DataFrame]
@@ -241,17 +247,6 @@ def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     alarms = views.ask("season_diagnosis").filter("alarm")
     by_season = alarms.partition_by("method", "season", as_dict=True)
     return {(str(method), int(season)): f.to_dicts() for (method, season), f in by_season.items()}
-
-
-def _add_places(lines: pl.DataFrame) -> pl.DataFrame:
-    """Add the place of each line among the boats of its type and class."""
-    like = ("boat_type", "crew_class")
-    old_rank, new_rank = pl.col("old_speed_rank"), pl.col("new_speed_rank")
-    return lines.with_columns(
-        old_type_place=old_rank.rank("min").over(like).cast(pl.Int32),
-        new_type_place=new_rank.rank("min").over(like).cast(pl.Int32),
-        type_size=new_rank.count().over(like).cast(pl.Int32),
-    )
 
 
 def select_own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
