@@ -54,6 +54,7 @@ def _get_limit(limit: Limit, crew_class: str) -> float | None:
 
 LOWEST_POWER_W: Final = {"H": 70.0, "D": 40.0}
 HIGHEST_POWER_W: Final = {"H": 90.0, "D": 55.0}
+"""Ends of the power per rower at a realistic tow speed."""
 LIGHTEST_ROWER_KG: Final = {"H": 81.0, "D": 64.0}
 HEAVIEST_ROWER_KG: Final = {"H": 114.0, "D": 90.0}
 WAYS_LIMIT: Final = 0.05

@@ -6,7 +6,6 @@ person should look at, in `pipeline.assessment.assess`.
 """
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 import polars as pl
@@ -41,13 +40,6 @@ from pipeline.tables.season_log import (
     TowInstruments,
 )
 from pipeline.uncertainty.propagation import combine, make_budget
-
-OF_ALL_TOWS: Final = {
-    "season_links": SeasonLinks,
-    "tow_instruments": TowInstruments,
-    "best_estimate_weights": BestEstimateWeights,
-}
-"""Tables of what all tows together tell, by name."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +88,7 @@ def build_tables(
     of_logs = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
     diagnosis = pl.concat([of_logs, diagnose_anemometers(c)]).sort("season", "part", "instrument")
     assessments = assess(curves, run_points, c.tows.frame, diagnosis)
+    links, instruments, weights = _make_tables_of_all_tows(estimated)
     rejecting: list[tuple[int, str]] = []
     for season in c.tows.frame["season"].unique().sort():
         rejecting += [(season, check) for check in method.get_steps(season).assessment.reject]
@@ -111,7 +104,9 @@ def build_tables(
         ),
         curve_points=named(_make_curve_points(inputs, bounds)) if with_bands else pl.DataFrame(),
         season_diagnosis=named(diagnosis),
-        **{table: named(rows) for table, rows in _make_tables_of_all_tows(estimated).items()},
+        season_links=named(links),
+        tow_instruments=named(instruments),
+        best_estimate_weights=named(weights),
         factors=estimated,
     )
 
@@ -251,17 +246,27 @@ def _average_factor(ln_factor: FloatArray) -> Factor:
     return factor, lo, hi, "gps"
 
 
-def _make_tables_of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
-    """Return the tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
-    schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
+def _make_tables_of_all_tows(
+    estimated: SeasonFactors | None,
+) -> tuple[pl.DataFrame, pl.DataFrame, pl.DataFrame]:
+    """Return season links, instruments of tows and weights of best estimates.
+
+    They are without rows where nothing was estimated.
+    """
+    links = pl.Schema(dtypes(SeasonLinks, without=["method"]))
+    instruments = pl.Schema(dtypes(TowInstruments, without=["method"]))
+    weights = pl.Schema(dtypes(BestEstimateWeights, without=["method"]))
     if estimated is None:
-        return {name: pl.DataFrame(schema=schema) for name, schema in schemas.items()}
-    of_links = schemas["season_links"]
-    return {
-        "season_links": estimated.factors.select(of_links.keys()).cast(pl.Schema(of_links)),
-        "tow_instruments": estimated.tows.select(schemas["tow_instruments"].keys()).sort("tow_id"),
-        "best_estimate_weights": estimated.weights,
-    }
+        return (
+            pl.DataFrame(schema=links),
+            pl.DataFrame(schema=instruments),
+            pl.DataFrame(schema=weights),
+        )
+    return (
+        estimated.factors.select(links.keys()).cast(links),
+        estimated.tows.select(instruments.keys()).sort("tow_id"),
+        estimated.weights,
+    )
 
 
 def _make_column(name: str, values: ArrayLike, known: BoolArray | bool) -> pl.Series:

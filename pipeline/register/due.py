@@ -10,7 +10,7 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.assessment.checks import CHECK
+from pipeline.assessment.checks import HIGHEST_POWER_W, LOWEST_POWER_W
 from pipeline.curve import VALID_RATIO
 from pipeline.races.power import find_line_curves, speed_at_power
 from pipeline.races.race import mean_speed_m_s, power_per_rower_w
@@ -18,12 +18,6 @@ from pipeline.register.register import LINE
 
 CREW: Final = LINE[:-1]
 """A boat's crew, whichever thwart it leaves free: results of races seldom say."""
-
-_IN_RANGE: Final = CHECK["power_outside_range"]
-LOWEST_W: Final = {c: _IN_RANGE.limits(c)[0] for c in ("H", "D")}
-HIGHEST_W: Final = {c: _IN_RANGE.limits(c)[1] for c in ("H", "D")}
-"""Power per rower at a realistic tow speed."""
-
 
 IN_RANGE = "in_range"
 TOO_FAST = "brought_down"
@@ -108,8 +102,9 @@ def _add_realistic_speeds(lines: pl.DataFrame) -> pl.DataFrame:
     """Add the power at the declared speed, and both ends of the realistic range of speeds."""
     a, s = find_line_curves(lines)
     rowers = lines["rowers"].to_numpy()
-    lowest_w = lines["crew_class"].replace_strict(LOWEST_W, return_dtype=pl.Float64).to_numpy()
-    highest_w = lines["crew_class"].replace_strict(HIGHEST_W, return_dtype=pl.Float64).to_numpy()
+    crew_class = lines["crew_class"]
+    lowest_w = crew_class.replace_strict(LOWEST_POWER_W, return_dtype=pl.Float64).to_numpy()
+    highest_w = crew_class.replace_strict(HIGHEST_POWER_W, return_dtype=pl.Float64).to_numpy()
     power = power_per_rower_w(lines["cw_kg_m"], lines["declared_speed_m_s"], rowers)
     return lines.with_columns(
         power_w=pl.Series(power),

@@ -58,7 +58,11 @@ def list_gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFra
             shift = gross[tow_id]
             code = f"{_SENSOR[shift.quantity]}_not_plausible"
             fault = Fault(
-                path=path, tow_id=tow_id, reason_code=code, message=_sentence(shift), lost="tow"
+                path=path,
+                tow_id=tow_id,
+                reason_code=code,
+                message=_describe_fault(shift),
+                lost="tow",
             )
             faults.append(fault)
     return fault_frame(faults)
@@ -81,7 +85,7 @@ def add_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
     )
 
 
-def _sentence(shift: Shift) -> str:
+def _describe_fault(shift: Shift) -> str:
     """Say to a volunteer what is seen, what it may be, and what to do."""
     whose = {
         "tow": say("This tow"),
@@ -90,7 +94,7 @@ def _sentence(shift: Shift) -> str:
         "season": say("All {} tows of season {}", len(shift.tows), shift.key),
         "archive": say("All tows of the archive"),
     }[shift.kind]
-    return say("{}: {}. {}", whose, _describe_shift(shift), _way_out(shift))
+    return say("{}: {}. {}", whose, _describe_shift(shift), _propose_remedy(shift))
 
 
 def _describe_shift(shift: Shift) -> str:
@@ -114,7 +118,7 @@ def _describe_shift(shift: Shift) -> str:
     return say("all wind angles lie between -3.14 and 6.28, as angles in radians do")
 
 
-def _way_out(shift: Shift) -> str:
+def _propose_remedy(shift: Shift) -> str:
     if not shift.causes:
         return say(
             "Check whether these are this boat's samples, and what the load cell was set to."

@@ -54,11 +54,11 @@ def study_tables(
         steps = ladder(old, new, tows, runs, (before, after), run_cache)
         ladders = [steps.with_columns(from_method=pl.lit(old.name), to_method=pl.lit(new.name))]
     return {
-        "correction_steps": _together(CorrectionSteps, ladders),
-        "option_effects": _together(OptionEffects, effects),
-        "option_curves": _together(OptionCurves, ticked),
+        "correction_steps": _join_frames(CorrectionSteps, ladders),
+        "option_effects": _join_frames(OptionEffects, effects),
+        "option_curves": _join_frames(OptionCurves, ticked),
     }
 
 
-def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
+def _join_frames(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
     return pl.concat(frames, how="diagonal") if frames else schema.create_empty()

@@ -208,7 +208,7 @@ def grounds(
             elif is_print:
                 ground = REPRODUCTION if pair["tow_id"] else CLOSED_FORM
             else:
-                ground = _input_or_code(is_other_input, others, code)
+                ground = _name_input_or_code(is_other_input, others, code)
         elif is_print:
             ground = "printed_and_tow" if is_other_tow else "printed"
         else:
@@ -218,7 +218,7 @@ def grounds(
     return pl.DataFrame(named, schema=schema, orient="row")
 
 
-def _input_or_code(is_other_input: bool, others: bool, code: bool) -> str:
+def _name_input_or_code(is_other_input: bool, others: bool, code: bool) -> str:
     if is_other_input:
         return "input_and_code" if code else "input"
     if others:
@@ -290,8 +290,8 @@ def report(old: Edition, new: Edition, lines: pl.DataFrame) -> DiffReport:
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
         causes=causes_of(compared),
-        largest=_rows(largest_first(moved).head(LARGEST)),
-        rows=_rows(lines),
+        largest=_list_rows(largest_first(moved).head(LARGEST)),
+        rows=_list_rows(lines),
     )
 
 
@@ -354,7 +354,7 @@ def causes_of(lines: pl.DataFrame) -> list[Row]:
     )
 
 
-def _rows(lines: pl.DataFrame) -> list[Row]:
+def _list_rows(lines: pl.DataFrame) -> list[Row]:
     """Return lines as rows, each with the causes that moved it."""
     rows = lines.with_columns(pl.col("causes").str.json_decode(pl.List(CAUSE))).to_dicts()
     for row in rows:

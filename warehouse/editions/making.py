@@ -104,7 +104,7 @@ def make_edition(
 def make_printed(store: Store, manifest: Manifest, path: str) -> Edition:
     """Make the edition that a printed register of the archive gives."""
     lines = prints.printed_lines(store, path)
-    return Edition(manifest, {"register": _complete(store, lines, manifest, None)}, None)
+    return Edition(manifest, {"register": _complete_lines(store, lines, manifest, None)}, None)
 
 
 def make_again(store: Store, edition: Edition) -> Edition:
@@ -151,14 +151,14 @@ def make_again(store: Store, edition: Edition) -> Edition:
 
 def add_changes(store: Store, edition: Edition) -> Edition:
     """Add the comparison with the edition before, where there is one."""
-    previous = _previous(store, edition)
+    previous = _read_previous(store, edition)
     if previous is None:
         return edition
     changes = compare(store, previous, edition)
     return replace(edition, tables=edition.tables | {folder.CHANGES: changes})
 
 
-def _previous(store: Store, edition: Edition) -> Edition | None:
+def _read_previous(store: Store, edition: Edition) -> Edition | None:
     previous = edition.manifest.previous
     return None if previous is None else read_edition(store, previous)
 
@@ -177,7 +177,7 @@ def _recompute(
     tows, runs = inputs["tows"], inputs["tow_runs"]
     blocks = stack_blocks(intake.all_blocks(store), runs)
     made = recompute(method, tows, blocks, with_bands=False)
-    carried = _carried_lines(store, manifest, method, made.log_factors, tows)
+    carried = _read_carried_lines(store, manifest, method, made.log_factors, tows)
     draft = draft_register(
         made.curves, tows, crews, manifest.valid_from, method.validity, decisions, carried
     )
@@ -200,11 +200,11 @@ def _recompute(
     members = conform("ensemble", members_of(method, made))
     tables = inputs | {name: conform(name, getattr(made, name)) for name in MADE}
     tables["ensemble"] = members.join(lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi")
-    tables["register"] = _complete(store, lines, manifest, method)
+    tables["register"] = _complete_lines(store, lines, manifest, method)
     return Edition(manifest, tables, method)
 
 
-def _carried_lines(
+def _read_carried_lines(
     store: Store, manifest: Manifest, method: Method, log_factors: pl.DataFrame, tows: pl.DataFrame
 ) -> pl.DataFrame:
     """Return the lines of the printed edition that is carried over; none where none is.
@@ -223,7 +223,7 @@ def _carried_lines(
     return carried_lines(printed.register, log_factors, method, tows)
 
 
-def _complete(
+def _complete_lines(
     store: Store, lines: pl.DataFrame, manifest: Manifest, method: Method | None
 ) -> pl.DataFrame:
     """Add the facts of boats and the verification codes; check and sort."""
@@ -266,7 +266,7 @@ def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
 def edition_files(store: Store, edition: Edition) -> dict[str, bytes]:
     """Write all files of an edition, last its manifest."""
     contents = sheet_files(store, edition)
-    for name, text in notes.texts(edition, _previous(store, edition)).items():
+    for name, text in notes.texts(edition, _read_previous(store, edition)).items():
         contents[name] = text.encode("utf-8")
     for name, frame in edition.tables.items():
         target = io.BytesIO()

@@ -142,10 +142,10 @@ def write_workbook(frame: pl.DataFrame, fields: Sequence[Field], made_on: dt.dat
     import xlsxwriter  # type: ignore[import-untyped,unused-ignore]  # noqa: PLC0415 - 0.15 s
 
     target = io.BytesIO()
-    formats: dict[Any, str] = {field.header: _number_format(field) for field in fields}
+    formats: dict[Any, str] = {field.header: _choose_number_format(field) for field in fields}
     with xlsxwriter.Workbook(target, {"in_memory": True, **TEXT_STAYS_TEXT}) as book:
         book.set_properties({"created": dt.datetime.combine(made_on, dt.time())})
-        _cells(frame, fields).write_excel(
+        _tabulate_cells(frame, fields).write_excel(
             book, SHEET, column_formats=formats, autofit=True, freeze_panes=(1, 1)
         )
     return target.getvalue()
@@ -174,8 +174,8 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
     is_hidden = any(shape.hidden for shape in shapes) or 0 in sizes
     if is_hidden or sheet.sheet_state != "visible" or sheet.conditional_formatting:
         return False
-    cells = _cells(frame, fields)
-    formats = [_number_format(field) for field in fields]
+    cells = _tabulate_cells(frame, fields)
+    formats = [_choose_number_format(field) for field in fields]
     expected: list[list[object]] = [list(cells.columns)]
     for row in cells.iter_rows():
         read = [_read_cell(value) for value in row]
@@ -189,7 +189,7 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
     return shown == expected and is_formatted
 
 
-def _cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
+def _tabulate_cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     """Return the values of the cells of a workbook, by header."""
     words = _write_words(frame)
     cells = []
@@ -207,7 +207,7 @@ def _read_cell(value: object) -> object:
     return None if value == "" else value
 
 
-def _number_format(field: Field) -> str:
+def _choose_number_format(field: Field) -> str:
     if field.type == "number":
         return "0." + "0" * field.decimals if field.decimals else "0"
     return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")

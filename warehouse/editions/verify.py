@@ -134,7 +134,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
     checked = [CheckedEdition(name, manifest.kind) for name, manifest in manifests.items()]
     by_other_code = head is not None and head == seal
     try:
-        with _archive_tables(store, archive if afresh else None) as again:
+        with _read_archive_again(store, archive if afresh else None) as again:
             for place, edition in enumerate(checked):
                 if edition.edition not in can_be_read:
                     continue
@@ -149,7 +149,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
 
 
 @contextmanager
-def _archive_tables(store: Store, archive: Path | None) -> Iterator[Store]:
+def _read_archive_again(store: Store, archive: Path | None) -> Iterator[Store]:
     """Yield a data folder with the same editions, made of the archive's files alone."""
     if archive is None:
         yield store
@@ -219,7 +219,10 @@ def _compare_rows(edition: Edition, again: Edition, table: str) -> Iterator[Find
         if n_same < edition.tables["tows"].height:
             why = say("tows that went into it changed")
     for row in differences(was, now, TABLES[table].primary_key()).iter_rows(named=True):
-        changed = [f"{n} {_text(row[n])} > {_text(row[f'{n} now'])}" for n in row["columns"]]
+        changed = [
+            f"{n} {_format_value(row[n])} > {_format_value(row[f'{n} now'])}"
+            for n in row["columns"]
+        ]
         message = say("made again, {}: {}", ", ".join(changed), why)
         yield Finding(edition.manifest.edition, kind, ROW_NAMES[table].format(**row), message)
     for column in was.columns:
@@ -284,7 +287,7 @@ def differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.
     columns = []
     for name in ["there"] + names:
         if name not in key:
-            is_unequal = _is_unequal(pairs, name)
+            is_unequal = _compare_columns(pairs, name)
             unequal.append(is_unequal)
             columns.append(pl.when(is_unequal).then(pl.lit(name)))
     return pairs.filter(pl.any_horizontal(unequal)).with_columns(
@@ -292,7 +295,7 @@ def differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.
     )
 
 
-def _is_unequal(pairs: pl.DataFrame, name: str) -> pl.Expr:
+def _compare_columns(pairs: pl.DataFrame, name: str) -> pl.Expr:
     one, other = pl.col(name), pl.col(f"{name} now")
     if not (pairs.schema[name].is_float() and pairs.schema[f"{name} now"].is_float()):
         return one.ne_missing(other)
@@ -302,5 +305,5 @@ def _is_unequal(pairs: pl.DataFrame, name: str) -> pl.Expr:
     return (one.is_null() != other.is_null()) | is_far.fill_null(value=False)
 
 
-def _text(value: object) -> str:
+def _format_value(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value or "nothing")

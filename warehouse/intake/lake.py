@@ -80,7 +80,7 @@ def read_tows(
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
     def read(tow: Row) -> Row:
-        return _bring_in(store, root, tow, runs_of[tow["tow_id"],], profile, hashes)
+        return _bring_in_tow(store, root, tow, runs_of[tow["tow_id"],], profile, hashes)
 
     workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
     with ThreadPoolExecutor(workers) as pool:
@@ -111,7 +111,7 @@ def all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
     return pl.concat(frames).insert_column(0, sound["tow_id"].gather(tow))
 
 
-def _bring_in(
+def _bring_in_tow(
     store: Store,
     root: Path,
     tow: Row,

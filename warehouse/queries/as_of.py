@@ -47,7 +47,7 @@ def overlay_register(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) 
         "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
     }
     for name, frame in made.items():
-        _lay(db, name, frame)
+        _lay_over(db, name, frame)
 
 
 def overlay_editions(db: duckdb.DuckDBPyConnection, store: Store) -> None:
@@ -58,10 +58,10 @@ def overlay_editions(db: duckdb.DuckDBPyConnection, store: Store) -> None:
     for name, published in published_tables(store).items():
         edition = "to_edition" if name == CHANGES else "edition"
         drafts = pl.DataFrame(db.table(name).pl()).filter(~pl.col(edition).is_in(editions))
-        _lay(db, name, pl.concat([conform(name, drafts), published]))
+        _lay_over(db, name, pl.concat([conform(name, drafts), published]))
 
 
-def _lay(db: duckdb.DuckDBPyConnection, name: str, frame: pl.DataFrame) -> None:
+def _lay_over(db: duckdb.DuckDBPyConnection, name: str, frame: pl.DataFrame) -> None:
     db.register("frame", frame.select(TABLES[name].column_names()).to_arrow())
     db.execute(f'CREATE OR REPLACE TEMP TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
     db.unregister("frame")

@@ -69,7 +69,7 @@ class Scenario:
         """Return what the figure of a boat's curves draws: see `curve_figure`, at 13 speeds."""
         curves = self.boat_curves(fsn_no).drop_nulls("cw_kg_m")
         runs = self.both(lambda draft: draft.made.run_points)
-        return pl.concat(curve_figure(_lines(curves), runs, curves).values(), how="diagonal")
+        return pl.concat(curve_figure(_draw_curves(curves), runs, curves).values(), how="diagonal")
 
     def boat_curves(self, fsn_no: str) -> pl.DataFrame:
         """Return every curve of a boat under both methods, with the `interval` of the method."""
@@ -88,7 +88,7 @@ class Scenario:
         return self.after.history.boats.select("fsn_no", "name", "boat_type")
 
 
-def _lines(curves: pl.DataFrame) -> pl.DataFrame:
+def _draw_curves(curves: pl.DataFrame) -> pl.DataFrame:
     """Return Cw of each curve at `LINE_RATIOS` of its declared speed."""
     rows = LINE_RATIOS.join(curves, how="cross")
     a = rows["a_kg_m"].to_numpy()
