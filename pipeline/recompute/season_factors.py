@@ -161,7 +161,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
         pl.Series("temperature_known", c.temperature.is_known),
         pl.Series("water_off_c", c.water_off_c),
         FORCE_SD.alias("force_sd"),
-    ).with_columns(pl.Series(name, values).fill_nan(None) for name, values in numbers.items())
+    ).with_columns(pl.DataFrame(numbers).fill_nan(None).get_columns())
     # A boat of which every tow is doubted stays as measured.
     is_observed = pl.col("ln_cw_sd") < UNOBSERVED_SD
     is_boat_observed = is_observed.any().over(LINE + ("state",))

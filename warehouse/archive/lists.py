@@ -214,7 +214,13 @@ def _read_sheet_table(sheet: Sheet, columns: Sequence[Column]) -> Table:
     place, _ = find_header(lines, columns)
     line, header = sheet.rows[place]
     rows = [(number, cells, False) for number, cells in sheet.rows[place + 1 :]]
-    return Table(header, line, _keep_filled_rows(rows), sheet.name, sheet.hidden_columns)
+    return Table(
+        header=header,
+        line=line,
+        rows=_keep_filled_rows(rows),
+        sheet=sheet.name,
+        hidden_columns=sheet.hidden_columns,
+    )
 
 
 def _keep_filled_rows(

@@ -253,7 +253,7 @@ def _leave_out_no_wind(judgement: Judgement) -> None:
     text = say("column '{column}' {} in all runs, which is not wind; the tow goes on without wind.")
     first = describe_value(judgement.runs[0].channels["wind_speed"][0])
     message = say(text, first, column=COLUMN_OF["wind_speed"])
-    judgement.lose_of_all("implausible_value", message, *EXTREMES)
+    judgement.lose_of_all("implausible_value", message, "wind_speed", "wind_angle")
 
 
 def _check_whole_tow(judgement: Judgement) -> None:

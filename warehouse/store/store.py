@@ -92,7 +92,9 @@ class Store:
         self, table: str, method: str | None = None, columns: Sequence[str] | None = None
     ) -> pl.DataFrame:
         """Read a table as written, or its rows of one method, or some of its columns."""
-        asked = columns if method is None or columns is None else list({"method", *columns})
+        asked = columns
+        if method is not None and columns is not None:
+            asked = list(set(columns) | {"method"})
         frame = read_parquet(self.table_path(table), asked)
         if method is None:
             return frame
