@@ -145,9 +145,9 @@ def draw_seasons(language: Language, rows: pl.DataFrame, caption: str) -> Markup
 def _add_season(plot: Plot, x: Scale, y: float, row: Row) -> None:
     """Add what a method makes of a season: the median, and the reach of its tows."""
     kind = _get_method_kind(row["method"])
-    low, middle, high = (
-        x(100.0 * (row[name] - 1.0)) for name in ("lowest_ratio", "median_ratio", "highest_ratio")
-    )
+    low = x(100.0 * (row["lowest_ratio"] - 1.0))
+    middle = x(100.0 * (row["median_ratio"] - 1.0))
+    high = x(100.0 * (row["highest_ratio"] - 1.0))
     ink = get_ink(kind)
     plot.add_path(f"M{low:.1f} {y:.1f}H{high:.1f}", ink, style={"stroke-width": 2})
     tip = _write_tip(plot.language, row, "season", "method", "median_ratio")
@@ -206,9 +206,9 @@ def draw_curves(
 
 def _add_curve(plot: Plot, x: Scale, y: Scale, rows: pl.DataFrame, ink: str) -> None:
     """Add what a method makes of a tow: band, line, interval at declared speed and run points."""
-    line, points, declared = (
-        rows.filter(kind=kind).to_dicts() for kind in ("line", "point", "declared")
-    )
+    line = rows.filter(kind="line").to_dicts()
+    points = rows.filter(kind="point").to_dicts()
+    declared = rows.filter(kind="declared").to_dicts()
     band = [row for row in line if row["cw_lo_kg_m"] is not None]
     plot.add_band(
         [x(row["speed_m_s"]) for row in band],

@@ -312,11 +312,11 @@ class Document:
             return known[value]
 
         if about is None:
-            return [f"<td{attributes}>{write(value)}</td>" for value in cells.to_list()]
+            return [f"<td{attributes}>{write(value)}" for value in cells.to_list()]
         written = []
         for name, boat in zip(cells.to_list(), about.to_list(), strict=True):
             link = _write_link(self._link("fsn_no", boat), write(name)) if name else ""
-            written.append(f"<td{attributes}>{link}</td>")
+            written.append(f"<td{attributes}>{link}")
         return written
 
     def _write_cell(self, name: str, value: Any) -> Markup:

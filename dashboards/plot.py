@@ -4,9 +4,9 @@ There is no script in it. Colours are those of Okabe and Ito, which colour-blind
 a shape or dash says the same in print. Pointing at a mark shows its numbers.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 from math import ceil, floor, log10
 from types import MappingProxyType
 from typing import Final, NamedTuple, Self
@@ -149,6 +149,27 @@ def _place_legend(
     return placed
 
 
+class Mark(NamedTuple):
+    """An element of SVG.
+
+    Attributes:
+        tag: its name.
+        place: the attributes that are its own.
+        looks: attributes of colour, line and letter, which it may share with a group.
+        content: what stands in it.
+    """
+
+    tag: str
+    place: str
+    looks: str
+    content: str
+
+    def write(self, looks: str) -> str:
+        """Return the element with these looks."""
+        end = f">{self.content}</{self.tag}>" if self.content else "/>"
+        return f"<{self.tag}{self.place}{looks}{end}"
+
+
 class Plot:
     """An area with two axes, and marks in the order in which they are added.
 
@@ -175,7 +196,7 @@ class Plot:
         self.width, self.height = width, height
         self.left, self.top = left, top + extra
         self.right, self.bottom = width - 10, height - 40
-        self._marks: list[str] = []
+        self._marks: list[Mark] = []
         self._has_links = False
         self._add_legend(placed)
 
@@ -214,10 +235,11 @@ class Plot:
             tip: what pointing at it shows.
             style: attributes of SVG.
         """
-        looks = {"fill": "none", "stroke": ink} | dict(style)
-        written = [f' {name}="{value}"' for name, value in looks.items() if value is not None]
-        end = f"><title>{escape(tip)}</title></path>" if tip else "/>"
-        self._marks.append(f'<path d="{path}"{"".join(written)}{end}')
+        looks = ""
+        for name, value in ({"fill": "none", "stroke": ink} | dict(style)).items():
+            if value is not None:
+                looks += f' {name}="{value}"'
+        self._marks.append(Mark("path", f' d="{path}"', looks, _write_tip(tip)))
 
     def add_text(
         self, x: float, y: float, text: str, anchor: str = "start", size: int = FONT_SIZE_PX
@@ -225,8 +247,8 @@ class Plot:
         """Add a text at a place; `anchor` is which of its ends lies there."""
         end = f' text-anchor="{anchor}"' if anchor != "start" else ""
         own_size = f' font-size="{size}"' if size != FONT_SIZE_PX else ""
-        place = f'x="{round(x, 1):g}" y="{round(y, 1):g}"'
-        self._marks.append(f"<text {place}{end}{own_size}>{escape(text)}</text>")
+        place = f' x="{round(x, 1):g}" y="{round(y, 1):g}"'
+        self._marks.append(Mark("text", place, end + own_size, escape(text)))
 
     def add_axes(self, x: Scale | None, y: Scale, x_title: str, y_title: str) -> None:
         """Add lines, ticks, numbers and titles; the title of the side stands above it."""
@@ -285,11 +307,12 @@ class Plot:
         """
         colour = ink or get_ink(kind)
         fill, shape = colour if filled else "none", SHAPES[kind % len(SHAPES)]
-        end = f"><title>{escape(tip)}</title></path>" if tip else "/>"
-        mark = f'<path d="M{x:.1f} {y:.1f}{shape}" fill="{fill}" stroke="{colour}"{end}'
+        place = f' d="M{round(x, 1):g} {round(y, 1):g}{shape}"'
+        mark = Mark("path", place, f' fill="{fill}" stroke="{colour}"', _write_tip(tip))
         if page:
             self._has_links = True
-            mark = f'<a href="{escape(page)}" aria-label="{escape(tip)}">{mark}</a>'
+            link = f' href="{escape(page)}" aria-label="{escape(tip)}"'
+            mark = Mark("a", link, mark.looks, mark.write(""))
         self._marks.append(mark)
 
     def add_interval(
@@ -317,7 +340,7 @@ class Plot:
         moves = " ".join(
             f"{(x - before_x) / parts:g} {(y - before_y) / parts:g}"
             for (before_x, before_y), (x, y) in pairwise(whole)
-        )
+        ).replace(" -", "-")  # a sign separates, too
         x, y = whole[0]
         self.add_path(f"M{x / parts:g} {y / parts:g}l{moves}", ink, style=style)
 
@@ -331,7 +354,7 @@ class Plot:
 
     def add_group(self, attributes: str, marks: str) -> None:
         """Add marks, as SVG, that are shown together."""
-        self._marks.append(f"<g{attributes}>{marks}</g>")
+        self._marks.append(Mark("g", attributes, "", marks))
 
     def _add_legend(self, placed: Sequence[tuple[LegendEntry, float, int]]) -> None:
         for entry, x, row in placed:
@@ -351,5 +374,20 @@ class Plot:
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
             f'{label} fill="currentColor" font-family="Open Sans, sans-serif" '
             f'font-size="{FONT_SIZE_PX}">'
-            f"{''.join(self._marks)}</svg>"
+            f"{''.join(self._write_marks())}</svg>"
         )
+
+    def _write_marks(self) -> Iterator[str]:
+        """Write the marks in order; those next to each other that look alike say so once."""
+        for looks, alike in groupby(self._marks, key=lambda mark: mark.looks):
+            marks = list(alike)
+            if len(marks) == 1:
+                yield marks[0].write(looks)
+            else:
+                shared = "".join(mark.write("") for mark in marks)
+                yield f"<g{looks}>{shared}</g>" if looks else shared
+
+
+def _write_tip(tip: str) -> str:
+    """Return what pointing at a mark shows, as the element that SVG has for it."""
+    return f"<title>{escape(tip)}</title>" if tip else ""

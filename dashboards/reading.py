@@ -24,6 +24,9 @@ TEXT_TAGS: Final = (*HEADING_LEVELS, "p", "aside", "figcaption", "li", "dt", "dd
 """Elements that hold a text."""
 
 CELL_TAGS: Final = ("td", "th")
+UNENDED_TAGS: Final = (*CELL_TAGS, "tr")
+"""Elements that may lack an end tag, as HTML allows: long tables save a tenth of a page by it."""
+
 VOID_TAGS: Final = ("meta", "link", "input", "br", "hr", "img")
 STYLES: Final = {"strong": "strong", "b": "strong", "code": "code"}
 """Elements within a text that are set otherwise."""
@@ -100,6 +103,7 @@ class _Reader(HTMLParser):
         self._style = ""
         self._about = ""
         self._svg = ""
+        self._open_cell = ""
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Begin an element, or a part that is left out."""
@@ -107,7 +111,7 @@ class _Reader(HTMLParser):
         if self._svg or tag == "svg":
             self._svg += self.get_starttag_text() or ""
         elif self._left_out:
-            self._left_out += [tag] if tag not in VOID_TAGS else []
+            self._left_out += [tag] if tag not in (*VOID_TAGS, *UNENDED_TAGS) else []
         elif self._is_left_out(tag, own):
             self._left_out = [] if tag in VOID_TAGS else [tag]
         else:
@@ -132,13 +136,18 @@ class _Reader(HTMLParser):
             self._begin_layout(first, look)
         elif tag in ("table", "dl"):
             self.blocks.append(Block("table" if tag == "table" else "terms", look=look))
-        elif tag == "tr":
-            self.blocks[-1].rows.append([])
+        elif tag in UNENDED_TAGS:
+            self._end_cell()
+            if tag == "tr":
+                self.blocks[-1].rows.append([])
+            else:
+                self._open_cell = tag
+                self._runs, self._attributes = [], own
         elif tag in STYLES:
             self._style = STYLES[tag]
         elif tag == "br":
             self._runs.append((self._style, " "))
-        elif tag in (*TEXT_TAGS, *CELL_TAGS):
+        elif tag in TEXT_TAGS:
             self._runs, self._attributes = [], own
 
     def _begin_layout(self, first: str, look: str) -> None:
@@ -167,12 +176,20 @@ class _Reader(HTMLParser):
             if tag == "svg":
                 self._add_picture()
         elif self._left_out:
-            if tag not in VOID_TAGS:
+            if tag == self._left_out[-1]:
                 self._left_out.pop()
         elif tag in STYLES:
             self._style = ""
-        elif tag in (*TEXT_TAGS, *CELL_TAGS):
+        elif tag in (*UNENDED_TAGS, "thead", "tbody", "table"):
+            self._end_cell()
+        elif tag in TEXT_TAGS:
             self._add_text(tag)
+
+    def _end_cell(self) -> None:
+        """Take the text of the cell that is open, if one is."""
+        if self._open_cell:
+            self._add_text(self._open_cell)
+            self._open_cell = ""
 
     def _add_text(self, tag: str) -> None:
         runs = [(style, HARD_BREAKS.sub("", text)) for style, text in self._runs]

@@ -4,7 +4,6 @@ from math import hypot
 from typing import Final
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from pipeline.arrays import FloatArray
@@ -27,6 +26,8 @@ def t_quantile(dof: ArrayLike) -> FloatArray:
     Args:
         dof: degrees of freedom, of any shape, positive.
     """
+    import scipy.special  # noqa: PLC0415 - what only reads finished tables does without
+
     freedom = np.asarray(dof, dtype=np.float64)
     return np.asarray(scipy.special.stdtrit(freedom, 0.5 * (1.0 + LEVEL)), dtype=np.float64)
 

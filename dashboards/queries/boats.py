@@ -101,12 +101,11 @@ def read_boat(
             "seconds": results.select_boat("trace_seconds", fsn_no),
         },
         "tow_names": tows,
-        "chosen": {"tow_id": tow_id or next(reversed(tows), ""), "method": _first(shown, results)},
+        "chosen": {
+            "tow_id": tow_id or next(reversed(tows), ""),
+            "method": results.method if results.method in shown else shown[-1],
+        },
     }
-
-
-def _first(shown: Sequence[str], results: Results) -> str:
-    return results.method if results.method in shown else shown[-1]
 
 
 def own_steps(results: Results, fsn_no: str, methods: Sequence[str]) -> pl.DataFrame:
@@ -216,39 +215,29 @@ def describe_answer(line: Row, races: Sequence[Row], faults: Sequence[Row]) -> R
         races: rows of `select_own_races` of its boat and crew.
         faults: rows of `season_diagnosis` of its season that a person should look at.
     """
+    described_faults = []
+    for fault in faults:
+        largest = fault["size"]
+        if fault["shown_by"] is not None:  # one boat alone shows it: any size up to the larger end
+            largest = max(fault["size_lo"], fault["size_hi"], key=abs)
+        described_faults.append(fault | {"largest": largest})
+
+    cw_verdict = ""
+    if line["cw_kg_m"] is not None and line["cw_ratio"] is not None:
+        ratio = line["cw_kg_m"] / line["old_cw_kg_m"]  # of the two shown, each at its own speed
+        cw_verdict = "lower" if ratio < 1 else "higher"
+        if abs(ratio - 1) <= NEGLIGIBLE_CHANGE:
+            cw_verdict = "same"
+
+    is_compared = line["best_moved_ratio"] is not None  # with the tow before of the unaltered boat
     return line | {
         "races": list(races),
-        "faults": [fault | {"largest": _get_largest_size(fault)} for fault in faults],
+        "faults": described_faults,
         "causes": list_causes(line),
         "bars": measure_bars(line),
-        "cw_verdict": _compare_numbers(line),
-        "has_moved": _has_moved(line),
+        "cw_verdict": cw_verdict,
+        "has_moved": is_compared and abs(line["moved_ratio"] - 1) >= NEGLIGIBLE_CHANGE,
     }
-
-
-def _get_largest_size(fault: Row) -> float | None:
-    """Return the size of a fault; of one that a single boat shows, the largest it may have."""
-    if fault["shown_by"] is None:
-        size: float | None = fault["size"]
-        return size
-    return float(max(fault["size_lo"], fault["size_hi"], key=abs))
-
-
-def _compare_numbers(line: Row) -> str:
-    """Return whether the number shown is the `same` as the old one, `lower` or `higher`."""
-    if line["cw_kg_m"] is None or line["cw_ratio"] is None:
-        return ""
-    ratio = line["cw_kg_m"] / line["old_cw_kg_m"]  # of the two shown, each at its own speed
-    if abs(ratio - 1) <= NEGLIGIBLE_CHANGE:
-        return "same"
-    return "lower" if ratio < 1 else "higher"
-
-
-def _has_moved(line: Row) -> bool:
-    """Return whether Cw differs from that of the tow before, of the same unaltered boat."""
-    if line["best_moved_ratio"] is None:
-        return False
-    return bool(abs(line["moved_ratio"] - 1) >= NEGLIGIBLE_CHANGE)
 
 
 def list_causes(line: Row) -> list[Row]:

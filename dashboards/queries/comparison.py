@@ -12,7 +12,6 @@ from pipeline.register.register import draft_name
 from pipeline.register.replay import RaceRules
 from pipeline.tables.row import Row
 from warehouse.editions.compare import DiffReport, report_with_races
-from warehouse.editions.publish import drafted
 from warehouse.store.editions import Edition, edition_names, read_edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
@@ -35,23 +34,29 @@ def compare(
         HerijkError: there is no such method or edition, or it cannot be computed.
     """
     known, published = KnownMethods.from_store(store), edition_names(store)
-    sides = [
-        read_edition(store, name)
-        if name in published
-        else known.named(name.removeprefix(draft_name("")))
-        for name in (old, new)
-    ]
-    before, after = (side.method if isinstance(side, Edition) else side for side in sides)
+    sides = []
+    for name in (old, new):
+        is_published = name in published
+        method_name = name.removeprefix(draft_name(""))
+        sides.append(read_edition(store, name) if is_published else known.named(method_name))
+    old_side, new_side = sides
+    before = old_side.method if isinstance(old_side, Edition) else old_side
+    after = new_side.method if isinstance(new_side, Edition) else new_side
     options = [] if before is None or after is None else list(differences(after, before))
     data: Data = {"old": old, "new": new, "options": options, "effect": None}
     if not {old, new} <= {*published} and store.read_fingerprint("tows") is None:
         return data
     is_of_a_day = as_of is not None or {old, new} & {*published}
     counting = ("valid",) if is_of_a_day else ("valid", "expired")
-    first, second = (
-        side if isinstance(side, Edition) else drafted(store, side, as_of, counting)
-        for side in sides
-    )
+    editions = []
+    for side in sides:
+        if isinstance(side, Edition):
+            editions.append(side)
+            continue
+        from warehouse.editions.publish import drafted  # noqa: PLC0415 - it recomputes tows
+
+        editions.append(drafted(store, side, as_of, counting))
+    first, second = editions
     effect = report_with_races(store, first, second, rules)
     return data | {"effect": effect, "simulated": effect.simulated} | _sum_up(effect)
 

@@ -10,10 +10,9 @@ from dashboards.queries.boats import NEGLIGIBLE_CHANGE
 from dashboards.queries.results import Data, Results
 from pipeline.messages import LANGUAGES
 from pipeline.method.definition import COMPLETE, Method
-from pipeline.method.options import Steps, find_basis
+from pipeline.method.options import START, STEP_ORDER, Steps, find_basis
 from pipeline.method.variant import Difference, differences
 from pipeline.register.register import STUDIED_METHOD
-from pipeline.studies.ladder import START, STEP_ORDER
 from pipeline.tables.row import Row
 from warehouse.queries.views import curve_figure
 from warehouse.store.methods import KnownMethods
@@ -55,6 +54,8 @@ def _explain_steps(
 ) -> list[Row]:
     """Return every step in the order of exchange: its options, and what it does here.
 
+    `kept` is the first option with its value in the last seasons, for a step that is unchanged.
+
     Args:
         method: what is explained.
         changed: options that the first method has otherwise.
@@ -73,28 +74,30 @@ def _explain_steps(
         tow=pl.col("tow_id").sort_by(size).last(),
     )
     effect_by_step = {row["step"]: row for row in effects.to_dicts()}
-    return [
-        {
-            "step": step,
-            "effect": effect_by_step.get(step),
-            "changed": [describe_option(one) for one in changed if one.step == step],
-            "kept": _get_first_option(method, step) if step in Steps.model_fields else None,
-        }
-        for step in dict.fromkeys((*STEP_ORDER, *Steps.model_fields))
-    ]
+    last_steps = method.ranges[-1].steps
+    explained = []
+    for step in dict.fromkeys((*STEP_ORDER, *Steps.model_fields)):
+        first_option = None
+        if step in Steps.model_fields:
+            options: Any = getattr(last_steps, step)
+            option = next(iter(type(options).model_fields))
+            value = getattr(options, option)
+            basis = find_basis(step, option, value)
+            first_option = {"option": option, "after": value, "basis": basis}
+        explained.append(
+            {
+                "step": step,
+                "effect": effect_by_step.get(step),
+                "changed": [describe_option(one) for one in changed if one.step == step],
+                "kept": first_option,
+            }
+        )
+    return explained
 
 
 def describe_option(one: Difference) -> Row:
     """Return an option that differs as a row, with who decided or proposed it."""
     return vars(one) | {"basis": find_basis(one.step, one.option, one.after)}
-
-
-def _get_first_option(method: Method, step: str) -> Row:
-    """Return the first option of a step with its value in the last seasons."""
-    options: Any = getattr(method.ranges[-1].steps, step)
-    option = next(iter(type(options).model_fields))
-    value = getattr(options, option)
-    return {"option": option, "after": value, "basis": find_basis(step, option, value)}
 
 
 def group_by_status(changed: Sequence[Difference]) -> dict[str, dict[str, list[Row]]]:

@@ -13,12 +13,12 @@ from dashboards.queries.methods import get_method_page, group_by_status
 from dashboards.queries.results import Data, Results
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import LANGUAGES
+from pipeline.method.options import START
 from pipeline.races.race import FATIGUE_REFERENCE
-from pipeline.studies.ladder import START
+from pipeline.register.causes import explode_causes, summarise_causes
 from pipeline.tables.display import STEP_FACTOR
 from pipeline.tables.keys import LINE, SEASON_LEVEL, WOULD_NOT_SHOW
 from pipeline.tables.row import Row
-from warehouse.editions.compare import causes_of, parts_of
 from warehouse.queries.answers import race_chances
 from warehouse.queries.change_report import last_changes
 from warehouse.queries.views import DRAFT
@@ -226,7 +226,7 @@ def read_years(results: Results, method: str | None = None) -> Data:
     causes = [
         {"year": year, "method": name, "main_cause": pick_cause(cause)} | cause
         for (year, name), rows in lines.group_by("year", "method", maintain_order=True)
-        for cause in causes_of(rows.drop_nulls("cw_ratio"))
+        for cause in summarise_causes(rows.drop_nulls("cw_ratio"))
     ]
     return {
         "method": chosen,
@@ -404,7 +404,7 @@ def read_motion(results: Results, lines: pl.DataFrame) -> Data | None:
         return None
     method = KnownMethods.from_store(results.views.store).get(new.removeprefix(DRAFT))
     is_decided = pl.col("step").is_in(find_decided_steps(changed)).fill_null(value=False)
-    parts = parts_of(lines.filter(change="changed"))
+    parts = explode_causes(lines.filter(change="changed"))
     return {
         "method": method.name,
         "titles": {tag: method.get_title(tag) for tag in LANGUAGES},

@@ -14,9 +14,9 @@ from dashboards.queries.methods import read_method
 from dashboards.queries.pages import measure_fatigue_range, pick_cause, sum_up_changes
 from dashboards.queries.results import Data, Results
 from pipeline.method.definition import COMPLETE, RUNS_ALONE
+from pipeline.register.causes import summarise_causes
 from pipeline.register.register import draft_name
 from pipeline.tables.row import Row
-from warehouse.editions.compare import causes_of
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.documents import (
     SMOOTH_SPEEDS,
@@ -158,7 +158,7 @@ def _describe_proposal(views: Views, against: str, method: str, lines: pl.DataFr
     moved = lines.filter(change="changed").drop_nulls("gain_in_two_hours_s").sort(gain, "fsn_no")
     flagged = views.ask("flagged_boats").filter(method=method)["tow_id"]
     voted = lines.drop_nulls("new_cw_kg_m")["new_tow_id"]
-    causes = sorted(causes_of(lines), key=lambda one: -abs(one["median_factor"] - 1))
+    causes = sorted(summarise_causes(lines), key=lambda one: -abs(one["median_factor"] - 1))
     changed = sum_up_changes(lines)
     effects = measure_effects(lines)
     effect = {"method": method, "changed": changed["changed"]}

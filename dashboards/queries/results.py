@@ -7,9 +7,8 @@ from typing import Any, Final, TypeAlias
 
 import polars as pl
 
-from pipeline.register.register import default_method
+from pipeline.register.register import FIRST_PUBLISHED, default_method
 from pipeline.tables.row import Row
-from warehouse.derive.studies import FIRST_PUBLISHED
 from warehouse.queries.answers import current_edition, line_changes
 from warehouse.queries.views import Views
 from warehouse.store.database import make_unknown_edition_error

@@ -12,12 +12,9 @@ import polars as pl
 from dashboards.addresses import boat_path
 from dashboards.queries.pages import name_ends
 from dashboards.queries.results import Data, Results
-from pipeline.consistency.types import QUANTITIES, TERM_NAMES
+from pipeline.tables.keys import QUANTITIES, TERM_NAMES
 from pipeline.tables.row import Row
 from warehouse.queries.types import find_type_differences, read_type_facts
-
-QUANTITY_ORDER: Final = tuple(quantity.name for quantity in QUANTITIES)
-"""Quantities in the order in which they are told."""
 
 DRAWN: Final = {
     "b_weight": ("b_m_s", "weight_kg"),
@@ -87,8 +84,9 @@ def _read_consistency(results: Results, boat_type: str, methods: Sequence[str]) 
     for row in rows:
         for term in TERM_NAMES.values():
             row[f"{term}_decimals"] = choose_decimals(row, term)
-    order = {name: place for place, name in enumerate(QUANTITY_ORDER)}
-    return sorted(rows, key=lambda row: (order[row["quantity"]], methods.index(row["method"])))
+    return sorted(
+        rows, key=lambda row: (QUANTITIES.index(row["quantity"]), methods.index(row["method"]))
+    )
 
 
 def choose_decimals(row: Row, term: str) -> int:
@@ -121,19 +119,18 @@ def read_types(results: Results) -> Data:
         for name in results.views.type_names()
         if results.views.has("compared_tows")
     ]
+    judged = [
+        one for one in types if any(row["spread_ratio"] is not None for row in one["verdicts"])
+    ]
     outside = results.views.ask("outliers").filter(pl.col("method").is_in(results.methods))
     return {
         "types": types,
-        "judged": [one for one in types if _is_judged(one["verdicts"])],
+        "judged": judged,
         "tows": _read_newest_tows(results),
         "outside": outside,
         "methods": results.methods,
         "chosen": {"method": results.method},
     }
-
-
-def _is_judged(verdicts: Sequence[Row]) -> bool:
-    return any(row["spread_ratio"] is not None for row in verdicts)
 
 
 def compare_types(results: Results, types: Sequence[str], methods: Sequence[str]) -> Data:
@@ -167,23 +164,21 @@ def compare_types(results: Results, types: Sequence[str], methods: Sequence[str]
                 "repeats": _sum_up_repeats(results, boat_type, methods),
             }
         )
+    differences = {}
+    for method in methods:
+        verdicts = []
+        for one in found:
+            rows = [row for row in one["rows"] if row["method"] == method]
+            verdicts.append((rows, one["eras"].filter(method=method).to_dicts()))
+        differences[method] = find_type_differences(*verdicts)
     spread = results.views.table("reproducibility").filter(is_shown).sort("method", "scope")
     return {
         "method": methods[-1],
         "methods": list(methods),
         "types": found,
-        "differences": {
-            method: find_type_differences(*(_select(one, method) for one in found))
-            for method in methods
-        },
+        "differences": differences,
         "reproducibility": name_ends(spread),
     }
-
-
-def _select(found: Data, method: str) -> tuple[list[Row], list[Row]]:
-    """Return the verdicts on a type and the shifts of its eras under a method."""
-    rows = [row for row in found["rows"] if row["method"] == method]
-    return rows, found["eras"].filter(method=method).to_dicts()
 
 
 def _sum_up_repeats(results: Results, boat_type: str, methods: Sequence[str]) -> pl.DataFrame:

@@ -5,7 +5,8 @@ from pathlib import Path
 import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.register.changes import register_changes
+from pipeline.register.changes import compare_lines
+from pipeline.tables.register import RegisterChanges
 from warehouse.store.database import open_database
 from warehouse.store.store import Store, read_parquet
 
@@ -95,4 +96,4 @@ def compare_registers(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         Rows of the table `register_changes`: `cw_ratio`, `power_ratio`, `time_ratio` are new over
         old at the old declared speed.
     """
-    return register_changes(old, new)
+    return compare_lines(old, new).select(RegisterChanges.column_names())

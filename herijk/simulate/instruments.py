@@ -106,7 +106,7 @@ def read_load_cell(
     )
     noise = coloured_noise(streams[Component.FORCE_NOISE], count, step_s, FORCE_NOISE_S)
     unrest = (
-        defects.surge_force * _surge(time_s, run.grid_s, streams[Component.FORCE_SURGE])
+        defects.surge_force * _simulate_surge(time_s, run.grid_s, streams[Component.FORCE_SURGE])
         + interpolate_to_samples(defects.force_wander * wander + run.steering_force)
         + defects.force_noise * noise
     )
@@ -114,16 +114,14 @@ def read_load_cell(
     return np.asarray(defects.force_scale * felt_n + tow.truth.force_zero_n, dtype=np.float32)
 
 
-def _surge(time_s: Floats, grid_s: Floats, rng: np.random.Generator) -> Floats:
+def _simulate_surge(time_s: Floats, grid_s: Floats, rng: np.random.Generator) -> Floats:
     """Simulate the swing of the tow line about `SURGE_HZ`, of unit variance and drifting phase."""
-    cosine, sine = (
-        np.interp(
-            time_s, grid_s, coloured_noise(rng, grid_s.size, 1.0 / SLOW_HZ, SURGE_COHERENCE_S)
-        )
-        for _ in range(2)
-    )
+    in_phase = coloured_noise(rng, grid_s.size, 1.0 / SLOW_HZ, SURGE_COHERENCE_S)
+    quadrature = coloured_noise(rng, grid_s.size, 1.0 / SLOW_HZ, SURGE_COHERENCE_S)
     phase = 2 * np.pi * SURGE_HZ * time_s
-    return np.asarray(cosine * np.cos(phase) + sine * np.sin(phase))
+    cosine = np.interp(time_s, grid_s, in_phase) * np.cos(phase)
+    sine = np.interp(time_s, grid_s, quadrature) * np.sin(phase)
+    return np.asarray(cosine + sine)
 
 
 def read_anemometer(

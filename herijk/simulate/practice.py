@@ -24,7 +24,7 @@ from herijk.simulate.hull import (
 )
 from herijk.simulate.motion import RunTruth
 from herijk.simulate.world import Tow
-from pipeline.channels import RUNS_PER_FILE, SECOND_FILE_OFFSET
+from pipeline.channels import RUN_SECONDS, RUNS_PER_FILE, SECOND_FILE_OFFSET
 
 OLD_COEFFICIENTS: Final = (0.5, 0.7)
 """Air drag ahead and following, before they were searched."""
@@ -79,41 +79,43 @@ def print_curve(
     samples: pl.DataFrame, runs: Sequence[RunTruth], tow: Tow, practice: Practice
 ) -> tuple[float, float]:
     """Return A [kg/m] and B [m/s] by a practice."""
-    used = [_run(samples, run, practice) for run in runs if _is_used(run, tow)]
-    y = _calibration(used) if practice.improved else 1.0
-    speed = np.array([y * run.log_m_s.mean() for run in used])
-    gross = np.array([(run.force_n / (y * run.log_m_s) ** 2).mean() for run in used])
+    used = []
+    for truth in runs:
+        is_out = truth.run <= RUNS_PER_FILE // 2
+        is_back_of_second_file = truth.run > SECOND_FILE_OFFSET + RUNS_PER_FILE // 2
+        if not tow.second_name or is_out or is_back_of_second_file:
+            used.append(_read_run(samples, truth, trimmed=practice.improved))
+    log_factor = _calibrate_on_gps(used) if practice.improved else 1.0
+    speed = np.array([log_factor * run.log_m_s.mean() for run in used])
+    gross = np.array([(run.force_n / (log_factor * run.log_m_s) ** 2).mean() for run in used])
+    highest_b = HIGHEST_B_M_S
     if practice.improved:
+        air = []
+        for run in used:
+            ahead = run.wind_m_s * np.cos(run.angle_rad)
+            abeam = run.wind_m_s * np.sin(run.angle_rad)
+            force = air_force_n(tow.hull, ahead, abeam, AIR_OF_2015)
+            air.append((force / (log_factor * run.log_m_s) ** 2).mean())
         counted = speed <= FASTEST_OF_2015 * tow.declared_speed_m_s
-        air = np.array([_oblique_kg_m(run, y, tow) for run in used])
-        speed, cw = (
-            speed[counted],
-            (gross - air)[counted] + still_air_cw_kg_m(tow.hull, AIR_OF_2015),
-        )
+        cw = (gross - np.array(air))[counted] + still_air_cw_kg_m(tow.hull, AIR_OF_2015)
+        speed = speed[counted]
+        highest_b = HULL_SPEEDS * 1.25 * float(np.sqrt(tow.boat.waterline_length_m))
     else:
-        cw = _searched(speed, gross, *_head_wind(used, y, tow))
-    if practice.temperature:
-        cw = cw + _to_reference(tow, speed)
-    highest_b = HULL_SPEEDS * 1.25 * np.sqrt(tow.boat.waterline_length_m)
-    return _fit(speed, cw, float(highest_b) if practice.improved else HIGHEST_B_M_S)
+        cw = _search_air_coefficients(speed, gross, used, tow)
+    if practice.temperature:  # its formula is secret: what is true takes its place
+        at_reference = water_cw_kg_m(tow.hull, speed, REFERENCE_TEMPERATURE_C)
+        cw = cw + at_reference - water_cw_kg_m(tow.hull, speed, tow.water_temperature_c)
+    return _fit(speed, cw, highest_b)
 
 
-def _is_used(run: RunTruth, tow: Tow) -> bool:
-    """Return whether a run counts; with a second file, its runs back replace the first file's."""
-    if not tow.second_name:
-        return True
-    out = run.run <= RUNS_PER_FILE // 2
-    return out or run.run > SECOND_FILE_OFFSET + RUNS_PER_FILE // 2
-
-
-def _run(samples: pl.DataFrame, run: RunTruth, practice: Practice) -> _Run:
+def _read_run(samples: pl.DataFrame, run: RunTruth, *, trimmed: bool) -> _Run:
+    """Return the samples of a run that a person kept: where trimmed, what is undisturbed."""
     mine = samples.filter(pl.col("run") == run.run)
-    rate_hz = mine.height / 50.0
-    first, last = (
-        (int(run.undisturbed_start_s * rate_hz), int(run.undisturbed_end_s * rate_hz))
-        if practice.improved
-        else (0, mine.height)
-    )
+    first, last = 0, mine.height
+    if trimmed:
+        rate_hz = mine.height / RUN_SECONDS
+        first = int(run.undisturbed_start_s * rate_hz)
+        last = int(run.undisturbed_end_s * rate_hz)
     mine = mine.slice(first, last - first).filter(
         (pl.col("log1_m_s") > READS_M_S) & pl.col("force_n").is_not_nan()
     )
@@ -131,60 +133,43 @@ def _run(samples: pl.DataFrame, run: RunTruth, practice: Practice) -> _Run:
     )
 
 
-def _calibration(runs: Sequence[_Run]) -> float:
+def _calibrate_on_gps(runs: Sequence[_Run]) -> float:
     """Return GPS over log from as many runs out as back, so that the current drops out."""
-    ways = [[run for run in runs if run.direction == way] for way in (1, -1)]
-    gps, log = (
-        np.mean([np.mean([getattr(run, name).mean() for run in way]) for way in ways])
-        for name in ("gps_m_s", "log_m_s")
-    )
-    return float(gps / log)
+    gps, log = [], []
+    for direction in (1, -1):
+        own = [run for run in runs if run.direction == direction]
+        gps.append(np.mean([run.gps_m_s.mean() for run in own]))
+        log.append(np.mean([run.log_m_s.mean() for run in own]))
+    return float(np.mean(gps) / np.mean(log))
 
 
-def _oblique_kg_m(run: _Run, y: float, tow: Tow) -> float:
-    ahead = run.wind_m_s * np.cos(run.angle_rad)
-    abeam = run.wind_m_s * np.sin(run.angle_rad)
-    force = air_force_n(tow.hull, ahead, abeam, AIR_OF_2015)
-    return float((force / (y * run.log_m_s) ** 2).mean())
-
-
-def _head_wind(runs: Sequence[_Run], y: float, tow: Tow) -> tuple[Floats, Floats, float]:
-    """Return the air part of each run for a coefficient of 1: ahead, following and still."""
-    front = AIR_DENSITY_KG_M3 / 2 * tow.hull.front_m2
-    parts = []
-    for run in runs:
-        along = run.wind_m_s * np.cos(run.angle_rad)
-        felt = front * along * np.abs(along) / (y * run.log_m_s) ** 2
-        parts.append((np.maximum(felt, 0.0).mean(), np.minimum(felt, 0.0).mean()))
-    ahead, following = np.array(parts).T
-    return ahead, following, front * OLD_COEFFICIENTS[0]
-
-
-def _searched(
-    speed: Floats, gross: Floats, ahead: Floats, following: Floats, still: float
+def _search_air_coefficients(
+    speed: Floats, gross: Floats, runs: Sequence[_Run], tow: Tow
 ) -> Floats:
     """Return Cw with air coefficients searched per run between 0 and 1 to fit the curve best."""
+    front = AIR_DENSITY_KG_M3 / 2 * tow.hull.front_m2
+    still = front * OLD_COEFFICIENTS[0]
+    parts = []  # air part of each run for a coefficient of 1: ahead and following
+    for run in runs:
+        along = run.wind_m_s * np.cos(run.angle_rad)
+        felt = front * along * np.abs(along) / run.log_m_s**2
+        parts.append((np.maximum(felt, 0.0).mean(), np.minimum(felt, 0.0).mean()))
+    ahead, following = np.array(parts).T
     head = np.full(speed.size, OLD_COEFFICIENTS[0])
     behind = np.full(speed.size, OLD_COEFFICIENTS[1])
     for _ in range(ITERATIONS):
         cw = gross - head * ahead - behind * following + still
         a_kg_m, b_m_s = _fit(speed, cw, HIGHEST_B_M_S)
         too_much = gross + still - a_kg_m / (1.0 - (speed / b_m_s) ** 2)
-        head = _within(too_much - behind * following, ahead, head)
-        behind = _within(too_much - head * ahead, following, behind)
+        head = _find_coefficient(too_much - behind * following, ahead, head)
+        behind = _find_coefficient(too_much - head * ahead, following, behind)
     return np.asarray(gross - head * ahead - behind * following + still)
 
 
-def _within(wanted: Floats, unit: Floats, before: Floats) -> Floats:
+def _find_coefficient(wanted: Floats, unit: Floats, before: Floats) -> Floats:
     """Return the coefficient in [0, 1] that takes off what is wanted; unchanged without wind."""
     felt = unit != 0.0
     return np.where(felt, np.clip(wanted / np.where(felt, unit, 1.0), 0.0, 1.0), before)
-
-
-def _to_reference(tow: Tow, speed: Floats) -> Floats:
-    """Return the true change of Cw to the reference temperature; the formula of 2018 is secret."""
-    at_reference = water_cw_kg_m(tow.hull, speed, REFERENCE_TEMPERATURE_C)
-    return at_reference - water_cw_kg_m(tow.hull, speed, tow.water_temperature_c)
 
 
 def _fit(speed: Floats, cw: Floats, highest_b: float) -> tuple[float, float]:

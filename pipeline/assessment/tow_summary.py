@@ -15,10 +15,7 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks.run_blocks import WindowSums
 from pipeline.blocks.tows import Tows
 from pipeline.hull import AIR_DENSITY_KG_M3, front_area_m2
-
-ROWER_POWER_W: Final = {"H": 80.0, "D": 47.5}
-"""Power per rower at the declared speed: the middle of 70-90 and of 40-55 W (Sleepproef 2017,
-"Sleepsnelheid")."""
+from pipeline.races.race import ROWER_POWER_W
 
 MIDDLE_DRAG: Final = 0.6
 """Middle of the drag coefficients in use: good enough to take off most of the air."""

@@ -17,9 +17,9 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.curve import VALID_RATIO
 from pipeline.hull import hull_speed_m_s
 from pipeline.quantiles import NORMAL
-from pipeline.tables.keys import LINE
+from pipeline.tables.keys import LINE, UNKNOWN_TYPE
 
-UNKNOWN_TYPE, ALL_TYPES = "unknown", "all"
+ALL_TYPES: Final = "all"
 TOW: Final = ("method", "tow_id") + LINE + ("boat_type",)
 """What names a tow, and with it a boat and crew, in the tables of this package."""
 

@@ -18,10 +18,10 @@ from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.consistency.boat_model import BoatModel
 from pipeline.consistency.noise import decompose, find_spread
-from pipeline.consistency.observed import UNKNOWN_TYPE, is_within_curve, ln_cw_variance_at
+from pipeline.consistency.observed import is_within_curve, ln_cw_variance_at
 from pipeline.quantiles import NORMAL, t_quantile
 from pipeline.tables.consistency import PredictedCw
-from pipeline.tables.keys import LINE
+from pipeline.tables.keys import LINE, UNKNOWN_TYPE
 
 MIN_BOATS_PER_COLUMN: Final = 3
 MEASURES: Final = ("displacement_kg", "waterline_length_m", "beam_m", "standard_speed_m_s")

@@ -17,14 +17,14 @@ from polars.dataframe.group_by import GroupBy
 
 from pipeline.arrays import FloatArray
 from pipeline.consistency.boat_model import Interval
-from pipeline.consistency.observed import ALL_TYPES, UNKNOWN_TYPE
+from pipeline.consistency.observed import ALL_TYPES
 from pipeline.curve import s_of_height
 from pipeline.history import ERAS, Era
 from pipeline.quantiles import LEVEL
 from pipeline.tables.consistency import EraShifts, RepeatPairs
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import frame_of
-from pipeline.tables.keys import LINE
+from pipeline.tables.keys import LINE, UNKNOWN_TYPE
 from pipeline.tables.row import Row
 
 ALL_PAIRS: Final = "all"

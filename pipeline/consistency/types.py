@@ -38,11 +38,12 @@ import scipy
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.consistency.boat_model import BoatModel, Interval
 from pipeline.consistency.noise import Noise, estimate_noise
-from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.consistency.repeats import estimate_median
 from pipeline.quantiles import t_quantile
+from pipeline.tables import keys
 from pipeline.tables.consistency import TypeConsistency, TypeLinePoints
 from pipeline.tables.frames import frame_of
+from pipeline.tables.keys import TERM_NAMES, TOW_SPEED, UNKNOWN_TYPE, WEIGHT
 from pipeline.tables.row import Row
 
 MIN_BOATS: Final = 5
@@ -60,12 +61,8 @@ OUTSIDE_CHANCE: Final = 0.05
 SDS_LIGHT_TO_HEAVY: Final = 2.0
 """A light and a heavy boat, a slow and a fast tow: so many standard deviations apart."""
 
-WEIGHT, TOW_SPEED = "weight_kg", "declared_speed_m_s"
 TERMS: Final = {WEIGHT: 100.0, TOW_SPEED: 0.1}
 """What may explain a quantity, in order of importance, with the step that a slope is given for."""
-
-TERM_NAMES: Final = {WEIGHT: "weight", TOW_SPEED: "tow_speed"}
-"""How columns of `type_consistency` about a term begin."""
 
 VERDICTS: Final = ("verdict", "rest_verdict", "weight_verdict", "tow_speed_verdict")
 """Columns that say why, where nothing can be said of a type."""
@@ -103,7 +100,7 @@ MORE_WITH_WEIGHT: Final = SlopePrior(0.045, 0.03)
 """A, and Cw, grow about as displacement to the power 0.8; a boat with its crew weighs 1.8 t."""
 
 CW: Final = Quantity(
-    name="cw_standard_kg_m",
+    name=keys.CW_STANDARD,
     y="ln_cw_standard",
     variance="ln_cw_variance",
     zero_effect="ln_cw_zero_effect",
@@ -111,14 +108,14 @@ CW: Final = Quantity(
     only_valid=True,
 )
 B: Final = Quantity(
-    name="b_m_s",
+    name=keys.B,
     y="bend",
     variance="bend_variance",
     zero_effect="bend_zero_effect",
     slopes={WEIGHT: SlopePrior(0.0, 0.03), TOW_SPEED: SlopePrior(0.0, 0.05)},
 )
 A: Final = Quantity(
-    name="a_kg_m",
+    name=keys.A,
     y="ln_a",
     variance="ln_a_variance",
     zero_effect="ln_a_zero_effect",

@@ -7,7 +7,7 @@ R. Pot, 24 January 2015; S2017 is his "Sleepproef" of 2017.
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Final, Literal, NamedTuple
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, JsonValue, WithJsonSchema
 
@@ -199,6 +199,24 @@ class Assessment(Declared):
         ],
         ...,
     ] = _option("decided", say("S2017; which checks is the method's choice"), ())
+
+
+STEP_ORDER: Final = (
+    "speed",
+    "force",
+    "window",
+    "runs",
+    "calibration",
+    "run_point",
+    "wind",
+    "temperature",
+    "unrecorded",
+    "curve",
+)
+"""The order in which steps are exchanged: that of the computation, and of the history."""
+
+START: Final = "start"
+"""What a ladder has as step where it begins."""
 
 
 class Steps(Declared):

@@ -5,7 +5,7 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.steps.window import HAND_COLUMNS
+from pipeline.tables.keys import HAND_COLUMNS
 
 UNKNOWN_WEIGHT_LN_SD: Final = 0.2
 """Standard deviation of ln weight where too few tows have one to show it (inferred)."""

@@ -13,34 +13,19 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
-from pipeline.assessment.tow_summary import ROWER_POWER_W
-from pipeline.choice import SAME_SHARE
 from pipeline.curve import VALID_RATIO, cw
 from pipeline.races.power import find_line_curves, speed_at_power
-from pipeline.races.race import power_per_rower_w
+from pipeline.races.race import ROWER_POWER_W, power_per_rower_w
+from pipeline.register.causes import NO_FACTOR
 from pipeline.register.register import LINE
-from pipeline.tables.frames import dtypes
-from pipeline.tables.register import Register, RegisterChanges
 from pipeline.tables.row import Row
-from pipeline.tables.studies import CorrectionSteps
 
 SAME_RATIO: Final = 5e-4
 """A curve that differs by at most 0.05 % anywhere between 85 and 115 % of the declared speed is the
 same curve (docs/method-details.md, 11; inferred)."""
 
-NO_FACTOR: Final = SAME_SHARE
-"""A factor this near to 1 is rounding and is not listed as a cause."""
-
 RACE_S: Final = 7200.0
 """Duration of the race in which a change is expressed in seconds."""
-
-PART_SCHEMA: Final = {name: dtypes(Register)[name] for name in LINE} | {
-    "cause": pl.String(),
-    "step": dtypes(CorrectionSteps)["step"],
-    "factor": dtypes(CorrectionSteps)["factor"],
-}
-NO_PARTS: Final = pl.DataFrame(schema=PART_SCHEMA)
-"""Known causes: per line and cause a factor on Cw; `step` where the cause is the method."""
 
 SHOWN: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s", "rank", "tow_id")
 """Columns of both registers that stand beside each other in a comparison."""
@@ -50,27 +35,17 @@ COMPARED: Final = (
 )  # fmt: skip
 
 
-def register_changes(
-    old: pl.DataFrame,
-    new: pl.DataFrame,
-    parts: pl.DataFrame = NO_PARTS,
-    grounds: pl.DataFrame | None = None,
-) -> pl.DataFrame:
-    """Return the columns of the table `register_changes` of `compare_lines`."""
-    return compare_lines(old, new, parts, grounds).select(RegisterChanges.column_names())
-
-
 def compare_lines(
     old: pl.DataFrame,
     new: pl.DataFrame,
-    parts: pl.DataFrame = NO_PARTS,
+    parts: pl.DataFrame | None = None,
     grounds: pl.DataFrame | None = None,
 ) -> pl.DataFrame:
     """Compare two registers line by line.
 
     Args:
         old, new: rows of the table `register`, each of one edition.
-        parts: factors of known causes, in order; columns of `PART_SCHEMA`.
+        parts: factors of known causes, in order: `LINE`, `cause`, `step` (of a method), `factor`.
         grounds: per line the `ground`, which names the factor that the parts leave over. Without
             it that is `printed` where a line has no tow, `tow` where another tow counts, else
             `method`.
@@ -161,22 +136,6 @@ def largest_first(lines: pl.DataFrame) -> pl.DataFrame:
     return lines.sort(-size, pl.col(LINE))
 
 
-def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
-    """Return the steps of a ladder as parts of the changes of the lines whose tow they are of.
-
-    Args:
-        register: lines of the old register, with their `tow_id`: its tow is re-based first.
-        ladder: `tow_id`, `position`, `step`, `factor`.
-    """
-    steps = (
-        register.select(pl.col(LINE), "tow_id")
-        .join(ladder, on="tow_id", maintain_order="left")
-        .sort(pl.col(LINE), "position")
-    )
-    factor = pl.col("factor").cast(pl.Float64)
-    return steps.select(pl.col(LINE), pl.lit("method").alias("cause"), "step", factor)
-
-
 def _find_filled_curves(pairs: pl.DataFrame, suffix: str) -> tuple[FloatArray, FloatArray]:
     """Return A and s = 1/B^2; where a register has no line, those of a harmless curve."""
     a, s = find_line_curves(pairs, suffix)
@@ -206,12 +165,16 @@ def _half_width(pairs: pl.DataFrame, suffix: str) -> FloatArray:
 
 
 def _explain(
-    pairs: pl.DataFrame, ratios: FloatArray, parts: pl.DataFrame, grounds: pl.DataFrame | None
+    pairs: pl.DataFrame,
+    ratios: FloatArray,
+    parts: pl.DataFrame | None,
+    grounds: pl.DataFrame | None,
 ) -> list[str]:
     """Return the causes of each change as JSON: known parts, and a factor for what remains."""
-    moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
-    parts_of = moved.rows_by_key(LINE, named=True)
-    ground_of = {}
+    parts_of, ground_of = {}, {}
+    if parts is not None:
+        moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
+        parts_of = moved.rows_by_key(LINE, named=True)
     if grounds is not None:
         ground_of = dict(zip(grounds.select(LINE).rows(), grounds["ground"], strict=True))
     explained = []

@@ -57,6 +57,9 @@ NEWER_TOW_UNMEASURED: Final = "newer_tow_without_samples"
 STUDIED_METHOD: Final = "rebased"
 """The method of today, which is shown first."""
 
+FIRST_PUBLISHED: Final = "as-published-2014"
+"""Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
+
 EXCLUDE, PREFER = "exclude", "prefer"
 DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
 NO_DECISIONS: Final = pl.DataFrame(schema=DECISION_SCHEMA)

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import polars as pl
 
 from pipeline.method.definition import Method, find_method_in_force
-from pipeline.register.changes import compare_lines, steps_of_lines
+from pipeline.register.causes import steps_of_lines
+from pipeline.register.changes import compare_lines
 from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name, lines_on_days
 from pipeline.register.replay import RaceRules, replay, winner_changes
 from pipeline.tables.register import RegisterYears, YearWinners

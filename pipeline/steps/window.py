@@ -19,6 +19,7 @@ from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks.run_blocks import RunBlocks, WindowSums
 from pipeline.method.constants import FORCE_ENDS_RATIO, SHORTEST_WINDOW_S, SPEED_ENDS_M_S
 from pipeline.quantiles import MAD_TO_SD
+from pipeline.tables.keys import HAND_COLUMNS
 
 SCORE_DECIMALS: Final = 6
 """Windows whose scores are equal to the microsecond are equals: the same faults in another order of
@@ -57,10 +58,6 @@ FORCE_SD_FLOOR: Final = 0.01
 """Smallest spread of block means that a peak is measured by, as a share of the median force."""
 
 WIND_SD_FLOOR_M_S: Final = 0.25
-
-HAND_COLUMNS: Final = {"start_s": "hand_start_s", "end_s": "hand_end_s", "reason": "hand_reason"}
-"""Columns of `blocks.runs` with the windows given by hand, by their name in `hand_windows`; null
-where a run has none."""
 
 BY_HAND: Final = "by_hand"
 CUT_REASONS: Final = ("speed_drift", "force_peak", "gust", "ends_differ")

@@ -6,33 +6,16 @@ is what it does on top of those before it.
 What a step does is in its own module.
 """
 
-from typing import Final
-
 import numpy as np
 import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.method.definition import Method
+from pipeline.method.options import START, STEP_ORDER
 from pipeline.recompute.computed import Computed
 from pipeline.recompute.plan import Plan
 from pipeline.recompute.recompute import estimate_season_factors, evaluate
 from pipeline.recompute.run_cache import RunCache
-
-STEP_ORDER: Final = (
-    "speed",
-    "force",
-    "window",
-    "runs",
-    "calibration",
-    "run_point",
-    "wind",
-    "temperature",
-    "unrecorded",
-    "curve",
-)
-"""The order in which steps are exchanged: that of the computation, and of the history."""
-
-START: Final = "start"
 
 
 def ladder(

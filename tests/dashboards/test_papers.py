@@ -15,10 +15,10 @@ from dashboards.queries.papers import read_certificates, read_proposal
 from dashboards.reading import read_blocks
 from pipeline.errors import MissingKnowledgeError
 from pipeline.races.race import power_per_rower_w
+from pipeline.register.causes import summarise_causes
 from pipeline.register.register import draft_name
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
-from warehouse.editions.compare import causes_of
 from warehouse.queries.answers import compared, line_changes, replayed
 from warehouse.queries.views import Views
 
@@ -128,8 +128,8 @@ def test_a_proposal_counts_every_line_that_changes(views):
 
 def test_a_proposal_names_the_causes_that_pages_name(views):
     old, new = map(draft_name, METHODS)
-    mine = causes_of(compared(views, old, new))
-    shown = causes_of(line_changes(views).filter(from_edition=old, to_edition=new))
+    mine = summarise_causes(compared(views, old, new))
+    shown = summarise_causes(line_changes(views).filter(from_edition=old, to_edition=new))
     assert {"temperature", "wind"} & {cause["step"] for cause in mine}
     for one, other in zip(mine, shown, strict=True):
         assert one == pytest.approx(other)

@@ -112,14 +112,14 @@ def test_a_number_on_a_page_is_the_warehouse_s(site, built):
     line = built.table("register").filter(pl.col("cw_kg_m").is_not_null()).row(0, named=True)
     text = (site / boat_path(line["fsn_no"])).read_text("utf-8")
     shown = f"{line['cw_kg_m']:.2f}".replace(".", ",")
-    assert f"<td>{shown}</td>" in text
+    assert f"<td>{shown}<" in text
 
 
 def rows_of(html):
     """Yield the rows of a table: whether each is hidden, and its cells."""
     for attributes, body in re.findall(r"<tbody([^>]*)>(.*?)</tbody>", html, re.DOTALL):
-        for cells in re.findall(r"<tr>(.*?)</tr>", body):
-            yield " hidden" in attributes, re.findall(r"<td[^>]*>(.*?)</td>", cells)
+        for cells in body.split("<tr>")[1:]:
+            yield " hidden" in attributes, re.findall(r"<td[^>]*>(.*?)(?=<td|$)", cells)
 
 
 def tables(page):

@@ -56,7 +56,7 @@ def test_of_all_certificates(fails, herijk, data, built, tmp_path):
 def test_of_a_proposal(fails, tmp_path):
     out = tmp_path / "out.pdf"
     command = ("proposal", METHODS[1], "--out", out)
-    fails(f"proposal-{METHODS[1]}", papers, "causes_of", lambda *_: True, *command)
+    fails(f"proposal-{METHODS[1]}", papers, "summarise_causes", lambda *_: True, *command)
     assert not out.exists()
 
 

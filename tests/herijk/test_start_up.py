@@ -9,17 +9,15 @@ READING = "warehouse.intake"
 HEAVY = {"dagster", "dataframely", "duckdb", "numpy", "polars", "scipy", "sqlalchemy"}
 WEB = {"starlette", "uvicorn"}
 HEAVY |= {READING} | WEB
-DECLARED = {"dataframely", "sqlalchemy"}
-"""What declares and checks tables; the second comes with the first."""
+READS_TABLES = {"duckdb", "numpy", "polars"}
+"""What reads finished tables; SciPy and declarations would add a third to each command."""
 
-OF_PAGES = HEAVY - WEB - {"dagster", READING}
 NEEDED = {
     "herijk.cli.main herijk.cli.options dashboards.terminal pipeline.method.definition": set(),
-    "warehouse.queries.reports": {"duckdb", "numpy", "polars"},
-    "dashboards.queries.boats dashboards.queries.pages warehouse.queries.types": OF_PAGES,
-    "warehouse.editions.compare": DECLARED | {"numpy", "polars", "scipy"},
-    # Columns of later, which an old edition lacks, are read from their declaration.
-    "warehouse.editions.lineage": DECLARED | {"numpy", "polars"},
+    "dashboards.document dashboards.queries.boats dashboards.queries.methods": READS_TABLES,
+    "dashboards.queries.pages dashboards.queries.types warehouse.queries.reports": READS_TABLES,
+    "dashboards.queries.comparison warehouse.editions.compare": READS_TABLES,
+    "warehouse.editions.lineage": {"numpy", "polars"},
     "assets.rebuild": HEAVY - WEB - {"dagster"},
 }
 """What modules, imported together, may need."""

@@ -8,12 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.register.changes import (
-    PART_SCHEMA,
-    compare_lines,
-    register_changes,
-    steps_of_lines,
-)
+from pipeline.register.causes import steps_of_lines
+from pipeline.register.changes import compare_lines
 
 KEY = ("fsn_no", "rowers", "crew_class", "empty_thwart")
 NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
@@ -33,7 +29,7 @@ def edition(name, *lines):
 
 
 def change(old, new):
-    return register_changes(edition("old", *old), edition("new", *new)).sort("fsn_no")
+    return compare_lines(edition("old", *old), edition("new", *new)).sort("fsn_no")
 
 
 @given(
@@ -95,10 +91,10 @@ def test_a_new_curve_that_ends_below_the_old_speed_gives_no_ratio():
 def test_whatever_is_known_all_factors_multiply_to_the_change(factors):
     of_line = ("FSN1", 8, "H", "")
     parts = [(*of_line, "method", f"step{i}", factor) for i, factor in enumerate(factors)]
-    known = pl.DataFrame(parts, schema=PART_SCHEMA, orient="row")
+    known = pl.DataFrame(parts, schema=[*KEY, "cause", "step", "factor"], orient="row")
     grounds = pl.DataFrame([(*of_line, "code")], schema=[*KEY, "ground"], orient="row")
     old, new = edition("old", line("FSN1", 40.0)), edition("new", line("FSN1", 44.0))
-    causes = json.loads(register_changes(old, new, known, grounds)["causes"].item())
+    causes = json.loads(compare_lines(old, new, known, grounds)["causes"].item())
     assert math.prod(c["factor"] for c in causes) == pytest.approx(1.1, rel=1e-12)
 
 

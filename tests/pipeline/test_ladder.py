@@ -5,10 +5,11 @@ import polars as pl
 import pytest
 
 from herijk.simulate import WorldSettings
+from pipeline.method.options import START, STEP_ORDER
 from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
-from pipeline.studies.ladder import START, STEP_ORDER, ladder
+from pipeline.studies.ladder import ladder
 from pipeline.studies.options import CHOICES, option_effects
 from tests.worlds import measure
 

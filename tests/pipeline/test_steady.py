@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from pipeline.arrays import FloatArray
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.steps.window import HAND_COLUMNS, Windows, steady_windows, take_whole_runs
+from pipeline.steps.window import Windows, steady_windows, take_whole_runs
+from pipeline.tables.keys import HAND_COLUMNS
 
 SECONDS = 50
 SAMPLES = 20

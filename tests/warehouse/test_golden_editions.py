@@ -8,8 +8,8 @@ from pathlib import Path
 import polars as pl
 import pytest
 
+from pipeline.register.causes import summarise_causes
 from tests.warehouse.edition_bench import diff
-from warehouse.editions.compare import causes_of
 from warehouse.editions.lineage import lineage
 from warehouse.editions.sheets import verification_codes
 from warehouse.editions.verify import verify
@@ -115,4 +115,6 @@ def test_a_line_leads_to_its_files_and_seconds(store):
 def test_their_comparison_is_that_of_the_day_of_publication(store):
     lines = diff(store, "gedrukt-2014", "2014-1")
     assert dict(lines["change"].value_counts().rows()) == {"added": 1, "changed": 2, "same": 1}
-    assert [one["cause"] for one in causes_of(lines.drop_nulls("cw_ratio"))] == ["printed_and_tow"]
+    assert [one["cause"] for one in summarise_causes(lines.drop_nulls("cw_ratio"))] == [
+        "printed_and_tow"
+    ]

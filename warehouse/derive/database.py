@@ -16,11 +16,9 @@ from pipeline.tables.display import find_number_form
 from pipeline.tables.schemas import ABOUT, STUDY, TABLES
 from pipeline.tables.views import VIEWS
 from warehouse.store.code import code_version
+from warehouse.store.database import DATABASE_TABLE
 from warehouse.store.files import file_sha256, write_beside
 from warehouse.store.store import Store
-
-DATABASE_TABLE: Final = "warehouse_database"
-"""The tables in the file, and its hash."""
 
 LAKE_ONLY: Final = ("ensemble",)
 """Tables that are not in the database: 200 rows per tow would make up most of it."""

@@ -7,16 +7,15 @@ import datetime as dt
 from collections.abc import Mapping, Sequence
 
 import polars as pl
-from pydantic import TypeAdapter
 
 from pipeline.method.definition import Method
 from pipeline.recompute.facts import samples_files
 from pipeline.recompute.results import Recomputed
 from pipeline.register import due, replay
-from pipeline.register.changes import register_changes, steps_of_lines
+from pipeline.register.causes import steps_of_lines
+from pipeline.register.changes import compare_lines
 from pipeline.register.printed import carried_lines
 from pipeline.register.register import (
-    CURVE_COLUMNS,
     LINE,
     apply_rule,
     draft_name,
@@ -30,14 +29,12 @@ from pipeline.tables.keys import SIZES
 from pipeline.tables.register import RaceChanges, RegisterChanges
 from pipeline.tables.schemas import TABLES, conform
 from pipeline.uncertainty.ensemble import draw_ensemble
-from warehouse.store import decisions as decided
+from warehouse.derive.edition_lines import history_rows, lines_in_time
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
     CHANGES,
-    DECISIONS,
     Edition,
     edition_names,
-    edition_path,
     read_edition,
 )
 from warehouse.store.store import Store
@@ -85,13 +82,14 @@ def register_tables(
         histories.append(history_rows(in_time, draft_name(method.name), method.name))
         if method != methods[0]:
             steps = steps_of_lines(drafts[0], ladders.filter(to_method=method.name))
-            changes.append(register_changes(drafts[0], drafts[-1], steps))
+            compared = compare_lines(drafts[0], drafts[-1], steps)
+            changes.append(compared.select(RegisterChanges.column_names()))
     register = pl.concat(drafts)
     hashes = {method.name: method.content_hash for method in methods}
     made = {
         "register": register,
         "register_history": pl.concat(histories),
-        "register_changes": pl.concat(changes) if changes else RegisterChanges.create_empty(),
+        "register_changes": pl.concat(changes),
         "lineage": lineage_rows(register, tows, hashes, code_version()),
     }
     with_editions = {
@@ -171,47 +169,6 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
         for table, frame in rows.items():
             parts[table].append(conform(table, frame))
     return {table: pl.concat(frames) for table, frames in parts.items()}
-
-
-def read_decisions_of_edition(store: Store, edition: Edition) -> pl.DataFrame:
-    """Return the decisions about tows with which an edition was made; for a draft those of now."""
-    name = edition.manifest.edition
-    if name not in edition_names(store):
-        return decided.tabulate_decisions(decided.read_decisions(store.root / decided.FILE_NAME))
-    text = (edition_path(store, name) / DECISIONS).read_text(encoding="utf-8")
-    return decided.tabulate_decisions(TypeAdapter(tuple[decided.Decision, ...]).validate_json(text))
-
-
-def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
-    """Return rows of `register_history`: the lines of an edition and those they replace.
-
-    So a race of before the edition is computed with the tow that counted then.
-    """
-    lines = edition.register.drop_nulls("cw_kg_m")
-    if edition.method is None:
-        return history_rows(
-            lines, edition.manifest.edition, lines["method"][0] if lines.height else ""
-        )
-    tows = edition.tables["tows"].filter(pl.col("tow_date") <= edition.manifest.valid_from)
-    earlier = lines_of_all_days(
-        edition.tables["curves"],
-        tows,
-        edition.method.validity,
-        read_decisions_of_edition(store, edition),
-    ).join(lines, on=LINE + ("tow_id",), how="anti")
-    both = pl.concat([earlier, lines.select(earlier.columns)])
-    return history_rows(both, edition.manifest.edition, edition.method.name)
-
-
-def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame:
-    """Return rows of `register_history`, in the order in which one line precedes another."""
-    return lines.select(
-        pl.lit(edition).alias("edition"),
-        pl.lit(method).alias("method"),
-        pl.col(LINE),
-        pl.int_range(1, pl.len() + 1, dtype=pl.Int32).over(LINE).alias("position"),
-        pl.col(CURVE_COLUMNS),
-    ).sort(pl.col(LINE), "position")
 
 
 def _describe_edition(edition: Edition) -> pl.DataFrame:

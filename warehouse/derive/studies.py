@@ -8,14 +8,11 @@ import polars as pl
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.method.definition import Method
 from pipeline.recompute.run_cache import RunCache
-from pipeline.register.register import STUDIED_METHOD
+from pipeline.register.register import FIRST_PUBLISHED, STUDIED_METHOD
 from pipeline.studies.ladder import ladder
 from pipeline.studies.options import option_curves, option_effects, tick_effects
 from pipeline.tables.declare import dy
 from pipeline.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
-
-FIRST_PUBLISHED: Final = "as-published-2014"
-"""Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
 
 JUDGED: Final = ("corrected-2013", "rebased-2015", STUDIED_METHOD)
 """Methods whose options of judgement are studied; the historical ones multiply or divide."""

@@ -7,43 +7,35 @@ from `pipeline.register.changes`, `pipeline.studies.ladder` and `pipeline.regist
 edition holds its comparison with the one before.
 """
 
-from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Final
 
 import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
-from pipeline.method.definition import RUNS_ALONE, find_method_in_force
+from pipeline.method.definition import RUNS_ALONE, Method, find_method_in_force
 from pipeline.races.power import compute_line_cw
-from pipeline.register.changes import (
+from pipeline.register.causes import (
+    CAUSE,
+    CLOSED_FORM,
     NO_FACTOR,
-    NO_PARTS,
-    PART_SCHEMA,
-    compare_lines,
-    largest_first,
+    REPRODUCTION,
+    name_grounds,
     steps_of_lines,
+    summarise_causes,
 )
+from pipeline.register.changes import compare_lines, largest_first
 from pipeline.register.printed import rebase_printed
-from pipeline.register.register import LINE, MEASURED, TOW_DAY, tow_days
+from pipeline.register.register import LINE, TOW_DAY, tow_days
 from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
-from pipeline.tables.frames import dtypes
 from pipeline.tables.row import Row
-from pipeline.tables.studies import CorrectionSteps
-from warehouse.derive.registers import lines_in_time
-from warehouse.editions.inputs import INPUTS_HASH, find_same_tows, tables_of_today
+from warehouse.derive.edition_lines import lines_in_time
+from warehouse.editions.inputs import find_same_tows, tables_of_today
 from warehouse.store.editions import CHANGES, Edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
-LADDER: Final = ("tow_id", "position", "step", "factor", "cw_kg_m")
-NO_LADDER: Final = pl.DataFrame(schema={name: dtypes(CorrectionSteps)[name] for name in LADDER})
-CAUSE: Final = pl.Struct({name: PART_SCHEMA[name] for name in ("cause", "step", "factor")})
 LARGEST: Final = 10
-REPRODUCTION: Final = "reproduction"
-"""From a printed line to its tow by the method then in force: what print does not explain."""
-CLOSED_FORM: Final = "closed_form"
-"""The log error of the season, on a printed line whose tow has no samples."""
 
 
 def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
@@ -59,13 +51,14 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return new.tables[CHANGES]
     before, after = _add_printed_tows(old, new), new.register
     ladder = _compute_ladder(store, old, new)
-    printed = _explain_printed_lines(before, ladder, new) if old.method is None else NO_PARTS
-    steps = steps_of_lines(before, ladder.filter(pl.col("position") > 0))
-    parts = pl.concat([printed, steps], how="vertical_relaxed")
+    parts = steps_of_lines(before, ladder.filter(pl.col("position") > 0))
+    if old.method is None and new.method is not None:
+        printed = _explain_printed_lines(before, ladder, new, new.method)
+        parts = pl.concat([printed, parts], how="vertical_relaxed")
 
     have_tows = "tows" in old.tables and "tows" in new.tables
     same = find_same_tows(old.tables, new.tables) if have_tows else frozenset[str]()
-    ground = grounds(
+    ground = name_grounds(
         before,
         after,
         same,
@@ -105,10 +98,14 @@ def _compute_ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
     From print it begins at the method that was in force when the register was printed.
     """
-    if new.method is None or old.manifest.method_hash == new.manifest.method_hash:
-        return NO_LADDER
-    from warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
+    # What may recompute tows is imported here: most comparisons are read as they were published.
+    from pipeline.studies.ladder import ladder  # noqa: PLC0415
+    from pipeline.tables.studies import CorrectionSteps  # noqa: PLC0415
+    from warehouse.intake import seasons as intake  # noqa: PLC0415
 
+    no_ladder = CorrectionSteps.create_empty()
+    if new.method is None or old.manifest.method_hash == new.manifest.method_hash:
+        return no_ladder
     today = tables_of_today(store)
     there = pl.col("tow_id").is_in(list(find_same_tows(new.tables, today)))
     tows, runs = today["tows"].filter(there), today["tow_runs"].filter(there)
@@ -118,9 +115,7 @@ def _compute_ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         known = KnownMethods.from_store(store)
         start = find_method_in_force(printed_in, [known.get(name) for name in known.names])
     if tows.is_empty() or start is None:
-        return NO_LADDER
-    from pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
-
+        return no_ladder
     blocks = stack_blocks(intake.all_blocks(store), runs)
     before = old.tables.get("tow_instruments")
     after = new.tables.get("tow_instruments")
@@ -129,15 +124,13 @@ def _compute_ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
 
 def _explain_printed_lines(
-    printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition
+    printed: pl.DataFrame, ladder: pl.DataFrame, new: Edition, method: Method
 ) -> pl.DataFrame:
     """Return the known causes of printed lines before the steps of the method.
 
     With samples: from print to the tow by the method then in force. Without: the log error of its
     season under the new method, in closed form.
     """
-    if new.method is None:
-        return NO_PARTS
     lines = printed.drop_nulls("cw_kg_m")
     computed = ladder.filter(position=0).select("tow_id", computed_cw="cw_kg_m")
     speeds = new.tables["tows"].select("tow_id", tow_speed="declared_speed_m_s")
@@ -148,7 +141,7 @@ def _explain_printed_lines(
     reproduction = measured["computed_cw"] / pl.Series(at_tow_speed, dtype=pl.Float64)
 
     unmeasured = lines.join(measured, on=LINE, how="anti").select(lines.columns)
-    rebased = rebase_printed(unmeasured, new.tables["log_factors"], new.method)
+    rebased = rebase_printed(unmeasured, new.tables["log_factors"], method)
     unmeasured = unmeasured.join(rebased, on=LINE, how="semi", maintain_order="left")
     speed = unmeasured["declared_speed_m_s"].to_numpy()
     closed_form = compute_line_cw(rebased, speed) / compute_line_cw(unmeasured, speed)
@@ -164,66 +157,6 @@ def _explain_printed_lines(
             parts(unmeasured, CLOSED_FORM, pl.Series(closed_form, dtype=pl.Float64)),
         ]
     )
-
-
-def grounds(
-    old: pl.DataFrame,
-    new: pl.DataFrame,
-    same: Collection[str],
-    *,
-    others: bool,
-    method: bool,
-    code: bool,
-    rebased: pl.DataFrame = NO_PARTS,
-) -> pl.DataFrame:
-    """Name the factor of each line that its known causes leave over.
-
-    Args:
-        old, new: the registers; a line of which the `basis` is not `MEASURED` is of print.
-        same: tows with the same input in both.
-        others: whether any tow has another input.
-        method, code: whether these differ.
-        rebased: parts of changes; a line that has any was re-based to the new method.
-
-    Returns:
-        `LINE` and its `ground`.
-    """
-    facts = LINE + ("tow_id", "tow_date", INPUTS_HASH, "basis")
-    pairs = old.select(facts).join(
-        new.select(facts), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
-    )
-    rebased_lines = set(rebased.select(LINE).rows())
-    named = []
-    for pair in pairs.iter_rows(named=True):
-        line = tuple(pair[name] for name in LINE)
-        is_print = pair["basis"] != MEASURED or pair["basis_new"] != MEASURED
-        is_other_tow = (
-            pair["tow_date" if is_print else "tow_id"]
-            != (pair["tow_date_new" if is_print else "tow_id_new"])
-        )
-        is_other_input = pair["tow_id_new"] not in same
-        if line in rebased_lines or not (method or is_print):
-            if is_other_tow:
-                ground = "tow"
-            elif is_print:
-                ground = REPRODUCTION if pair["tow_id"] else CLOSED_FORM
-            else:
-                ground = _name_input_or_code(is_other_input, others, code)
-        elif is_print:
-            ground = "printed_and_tow" if is_other_tow else "printed"
-        else:
-            ground = "unseparated" if is_other_tow or is_other_input or code else "method"
-        named.append(line + (ground,))
-    schema = {name: old.schema[name] for name in LINE} | {"ground": pl.String()}
-    return pl.DataFrame(named, schema=schema, orient="row")
-
-
-def _name_input_or_code(is_other_input: bool, others: bool, code: bool) -> str:
-    if is_other_input:
-        return "input_and_code" if code else "input"
-    if others:
-        return "code_or_other_input" if code else "other_input"
-    return "code" if code else "unexplained"
 
 
 # Summary
@@ -243,7 +176,7 @@ class DiffReport:
         exceeds_interval: lines that moved by more than their intervals.
         interval_unknown: lines whose interval is not known.
         runs_alone: editions whose intervals are the spread of the runs alone.
-        causes: see `causes_of`.
+        causes: see `summarise_causes`.
         largest: the lines that changed most.
         rows: all lines: rows of `register_changes` with the causes that moved each.
         race_rules: how races are worked out, where that was asked.
@@ -289,7 +222,7 @@ def report(old: Edition, new: Edition, lines: pl.DataFrame) -> DiffReport:
             for edition in (old, new)
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
-        causes=causes_of(compared),
+        causes=summarise_causes(compared),
         largest=_list_rows(largest_first(moved).head(LARGEST)),
         rows=_list_rows(lines),
     )
@@ -323,35 +256,6 @@ def _summarise(lines: pl.DataFrame) -> Row:
         "median_power_ratio": power,
         "median_seconds": seconds,
     }
-
-
-def parts_of(lines: pl.DataFrame) -> pl.DataFrame:
-    """Return the causes of lines, one a row: `LINE`, `cause`, `step` and `factor`."""
-    causes = pl.col("causes").str.json_decode(pl.List(CAUSE))
-    return lines.select(pl.col(LINE), causes).explode("causes").unnest("causes")
-
-
-def causes_of(lines: pl.DataFrame) -> list[Row]:
-    """Return the effect of each cause, or step of a method; that with the most lines first.
-
-    Returns:
-        Rows of `cause`, `step` (where a method is the cause), `lines` (how many it moved), and of
-        its factors on Cw there `median_factor`, `lowest_factor`, `highest_factor`.
-    """
-    factor = pl.col("factor")
-    return (
-        parts_of(lines)
-        .filter((factor - 1.0).abs() > NO_FACTOR)
-        .group_by("cause", "step", maintain_order=True)
-        .agg(
-            pl.len().alias("lines"),
-            factor.median().alias("median_factor"),
-            factor.min().alias("lowest_factor"),
-            factor.max().alias("highest_factor"),
-        )
-        .sort("lines", "cause", "step", descending=[True, False, False])
-        .to_dicts()
-    )
 
 
 def _list_rows(lines: pl.DataFrame) -> list[Row]:

@@ -34,7 +34,8 @@ from pipeline.tables.frames import dtypes
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import Register
 from pipeline.tables.schemas import conform
-from warehouse.derive.registers import members_of, read_decisions_of_edition
+from warehouse.derive.edition_lines import read_decisions_of_edition
+from warehouse.derive.registers import members_of
 from warehouse.editions import notes, sheets
 from warehouse.editions import printed as prints
 from warehouse.editions.compare import compare

@@ -19,12 +19,12 @@ import polars as pl
 
 from pipeline.errors import HerijkError, MissingKnowledgeError
 from pipeline.messages import say
+from pipeline.register.causes import explode_causes
 from pipeline.register.register import LINE
 from pipeline.tables.schemas import TABLES
 from warehouse.archive import FileHashes
 from warehouse.derive.archive_tables import read_archive
 from warehouse.editions import sheets
-from warehouse.editions.compare import parts_of
 from warehouse.editions.inputs import JUDGED, find_same_tows
 from warehouse.editions.integrity import (
     READING_ERRORS,
@@ -240,7 +240,7 @@ def _compare_table(edition: Edition, again: Edition, table: str) -> Iterator[Fin
         TABLES[table].primary_key(),
     )
     columns = set(rows["columns"].explode())
-    if table == CHANGES and differences(parts_of(was), parts_of(now), LINE).height:
+    if table == CHANGES and differences(explode_causes(was), explode_causes(now), LINE).height:
         columns.add("causes")  # a text with numbers, which are compared as such
     if columns:
         message = say("made again, it differs in {}", ", ".join(sorted(columns)))

@@ -19,8 +19,6 @@ from pipeline.register.replay import (
     winner_changes,
 )
 from pipeline.tables.row import Row
-from pipeline.tables.schemas import TABLES
-from warehouse.editions.compare import compare
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import make_unknown_edition_error
 from warehouse.store.editions import Edition, read_edition
@@ -72,6 +70,8 @@ def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None
     Raises:
         MissingKnowledgeError: there is no such edition or draft.
     """
+    from warehouse.editions.compare import compare  # noqa: PLC0415 - it may recompute tows
+
     before = _find_edition(views, old, valid_from)
     after = _find_edition(views, new, valid_from)
     lines = compare(views.store, before, after)
@@ -204,6 +204,8 @@ def _choose_tables(views: Views, edition: str) -> _Tables:
     """Return the tables behind a register by name: its own of an edition, today's of a draft."""
     if edition.startswith(DRAFT):
         return views.table
+    from pipeline.tables.schemas import TABLES  # noqa: PLC0415 - for editions alone
+
     own = read_edition(views.store, edition).tables
     return lambda name: own[name] if name in own else TABLES[name].create_empty()
 

@@ -16,7 +16,7 @@ from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name, lines_on
 from pipeline.tables.keys import SIZES
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.registers import due_of_lines, published_tables
-from warehouse.store.editions import CHANGES, edition_names
+from warehouse.store.editions import CHANGES
 from warehouse.store.store import Store
 
 NOT_YET: Final = "never_towed"
@@ -51,10 +51,8 @@ def overlay_register(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) 
 
 
 def overlay_editions(db: duckdb.DuckDBPyConnection, store: Store) -> None:
-    """Make a connection answer with the editions of now, where they are others than it knows."""
+    """Make a connection answer with the editions of now instead of those that it knows."""
     editions = pl.DataFrame(db.table("editions").pl())["edition"].to_list()
-    if set(editions) == set(edition_names(store)):
-        return
     for name, published in published_tables(store).items():
         edition = "to_edition" if name == CHANGES else "edition"
         drafts = pl.DataFrame(db.table(name).pl()).filter(~pl.col(edition).is_in(editions))

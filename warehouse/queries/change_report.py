@@ -14,13 +14,13 @@ from typing import Final
 import polars as pl
 
 from pipeline.recompute.facts import add_boat_types, add_hand_windows
-from pipeline.register.changes import NO_PARTS, compare_lines
+from pipeline.register.causes import name_grounds
+from pipeline.register.changes import compare_lines
 from pipeline.register.register import LINE, MEASURED, default_method, draft_name
 from pipeline.tables.row import Row
-from warehouse.derive.database import DATABASE_TABLE
-from warehouse.editions.compare import grounds
-from warehouse.editions.inputs import INPUTS_HASH, find_same_tows
+from warehouse.editions.inputs import find_same_tows
 from warehouse.store.code import code_version
+from warehouse.store.database import DATABASE_TABLE
 from warehouse.store.files import write_folder_beside
 from warehouse.store.store import DamagedFileError, Store, read_parquet, write_parquet
 
@@ -229,7 +229,6 @@ def _compare_drafts(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
     code = not was["about"]["code_version"].equals(now["about"]["code_version"])
     old_hashes = dict(was["methods"].select("method", "content_hash").iter_rows())
     new_hashes = dict(now["methods"].select("method", "content_hash").iter_rows())
-    measured = {"basis": pl.lit(MEASURED), INPUTS_HASH: pl.lit(None, pl.String)}
     changed = []
     for method in now["methods"]["method"]:
         draft = draft_name(method)
@@ -238,10 +237,10 @@ def _compare_drafts(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
         if old.is_empty() or new.is_empty():
             continue
         redefined = old_hashes.get(method) != new_hashes.get(method)
-        old = old.with_columns(**measured)
-        new = new.with_columns(**measured)
-        ground = grounds(old, new, same, others=others, method=redefined, code=code)
-        lines = compare_lines(old, new, NO_PARTS, ground).filter(pl.col("change") != "same")
+        old = old.with_columns(basis=pl.lit(MEASURED))
+        new = new.with_columns(basis=pl.lit(MEASURED))
+        ground = name_grounds(old, new, same, others=others, method=redefined, code=code)
+        lines = compare_lines(old, new, grounds=ground).filter(pl.col("change") != "same")
         named = lines.join(names, on="fsn_no", how="left", maintain_order="left")
         changed += named.sort(LINE).to_dicts()
     return changed

@@ -6,10 +6,9 @@ from typing import Final, TypeAlias
 
 import polars as pl
 
-from pipeline.consistency.observed import UNKNOWN_TYPE
-from pipeline.consistency.types import TERM_NAMES
 from pipeline.errors import MissingKnowledgeError
 from pipeline.quantiles import differ_beyond_intervals
+from pipeline.tables.keys import TERM_NAMES, UNKNOWN_TYPE
 from pipeline.tables.row import Row
 from warehouse.queries.views import Views
 from warehouse.store.boats import (

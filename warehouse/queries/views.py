@@ -9,8 +9,7 @@ from typing import Final, Self
 
 import polars as pl
 
-from pipeline.register.register import LINE, add_empty_thwart
-from warehouse.queries.as_of import overlay_editions, overlay_register
+from pipeline.register.register import LINE
 from warehouse.queries.reports import SIZED_FAULTS
 from warehouse.store.database import open_database
 from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
@@ -26,9 +25,14 @@ class Views:
         self.store = store
         self._db = open_database(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
-        overlay_editions(self._db, store)
+        known = self.table("editions")["edition"]
+        if as_of is None and set(known) == set(edition_names(store)):
+            return
+        from warehouse.queries import as_of as overlays  # noqa: PLC0415 - all that makes registers
+
+        overlays.overlay_editions(self._db, store)
         if as_of is not None:
-            overlay_register(self._db, store, as_of)
+            overlays.overlay_register(self._db, store, as_of)
 
     def __enter__(self) -> Self:
         return self
@@ -69,7 +73,7 @@ class Views:
         lines = self.ask("register")
         key = ("edition",) + LINE
         for edition in edition_names(self.store):
-            own = add_empty_thwart(read_table(edition_path(self.store, edition), "register"))
+            own = read_table(edition_path(self.store, edition), "register")
             own = own.select(pl.col(key), "name", "boat_type")
             lines = lines.update(own, on=key, include_nulls=True)
         called = pl.col("name").str.to_lowercase()

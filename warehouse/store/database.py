@@ -10,6 +10,9 @@ from pipeline.errors import MissingKnowledgeError, UnavailableError
 from pipeline.messages import say
 from pipeline.tables.row import Row
 
+DATABASE_TABLE: Final = "warehouse_database"
+"""The table of the lake that holds the hash of the file and what it was made of."""
+
 _HELD: Final = say(
     "another program has it open for writing. Close that program, or let it open the file to "
     "read only, and try again"

@@ -28,8 +28,7 @@ from pipeline.messages import say
 from pipeline.method.definition import Method
 from pipeline.method.reading import parse_method
 from pipeline.register.register import add_empty_thwart
-from pipeline.tables.curves import Curves
-from pipeline.tables.register import Register
+from warehouse.store.code import code_version
 from warehouse.store.files import TEMPORARY_PREFIX, write_folder_beside
 from warehouse.store.store import Store
 
@@ -47,7 +46,7 @@ XLSX: Final = "register.xlsx"
 NOTICE: Final = "bericht.md"
 NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
-LATER_COLUMNS: Final = {"register": Register, "curves": Curves}
+OUTGROWN: Final = ("register", "curves")
 """Tables that got more columns since the first editions."""
 
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,59}")
@@ -261,8 +260,10 @@ def read_edition(store: Store, edition: str) -> Edition:
     manifest = read_manifest(path)
     names = [name.removesuffix(PARQUET) for name in manifest.files if name.endswith(PARQUET)]
     tables = {name: read_table(path, name) for name in names}
-    if CHANGES in tables:
-        tables[CHANGES] = add_empty_thwart(tables[CHANGES])
+    if manifest.code_version != code_version():  # no new column without code that computes it
+        for name in OUTGROWN:
+            if name in tables:
+                tables[name] = _add_later_columns(name, tables[name])
     method = None
     if manifest.kind == "recomputed":
         text = (path / METHOD).read_text(encoding="utf-8")
@@ -288,7 +289,7 @@ def read_edition_method(store: Store, edition: str) -> Method:
 
 
 def read_table(path: Path, name: str) -> pl.DataFrame:
-    """Read a table of an edition, with the columns that came later, empty.
+    """Read a table of an edition as it was written; its lines name the thwart that is left free.
 
     Raises:
         BrokenPromiseError: the file is missing or damaged.
@@ -301,11 +302,17 @@ def read_table(path: Path, name: str) -> pl.DataFrame:
             path.name,
             name,
         ) from error
-    if name not in LATER_COLUMNS:
-        return frame
-    frame = add_empty_thwart(frame) if name == "register" else frame
-    later = {n: c.dtype for n, c in LATER_COLUMNS[name].columns().items() if c.nullable}
-    missing = [pl.lit(None, t).alias(n) for n, t in later.items() if n not in frame.columns]
+    return add_empty_thwart(frame) if name in ("register", CHANGES) else frame
+
+
+def _add_later_columns(name: str, frame: pl.DataFrame) -> pl.DataFrame:
+    """Add the columns that a table got since an edition was made, empty."""
+    from pipeline.tables.schemas import TABLES  # noqa: PLC0415 - for older editions alone
+
+    missing = []
+    for column, declared in TABLES[name].columns().items():
+        if declared.nullable and column not in frame.columns:
+            missing.append(pl.lit(None, declared.dtype).alias(column))
     return frame.with_columns(missing)
 
 
