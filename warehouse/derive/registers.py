@@ -68,7 +68,7 @@ def register_tables(
     lines: dict[str, pl.DataFrame] = {}
     drafts: list[pl.DataFrame] = []
     histories = []
-    changes = []
+    changes: list[pl.DataFrame] = [RegisterChanges.create_empty()]
     ladders = correction_steps.filter(pl.col("position") > 0, from_method=methods[0].name)
     for method in methods:
         own_curves = curves.filter(method=method.name)
