@@ -11,7 +11,7 @@ import pytest
 
 from tests.conftest import METHODS, SMALL, Workbench
 from tests.herijk.conftest import hold_against_form
-from warehouse.store.store import digest_table
+from tests.tables import digest_table
 
 ROOT = Path(__file__).parents[2]
 THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")
