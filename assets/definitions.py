@@ -1,6 +1,7 @@
 """The Dagster code location: what `dg`, `dagster dev` and `herijk serve` load."""
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Final
 
@@ -9,6 +10,7 @@ import dagster as dg
 from assets import archive, automation, checks, consistency, curves, database, register, rules
 from assets.lake import Folders, Lake, describe_table
 from assets.settings import read_settings
+from pipeline.tables.schemas import TABLES
 
 DEMO: Final = Path(__file__).parents[1] / "demo"
 """What `make demo` makes in a clone."""
@@ -18,14 +20,33 @@ SUBJECTS: Final = (archive, rules, curves, consistency, register, database)
 
 
 def load_assets() -> list[dg.AssetsDefinition]:
-    """Return the assets of all modules, each with the columns of its table."""
+    """Return the assets of all modules, each with the columns of its table.
+
+    Raises:
+        LookupError: a declared table has no asset.
+    """
     loaded: list[dg.AssetsDefinition] = []
     for module in SUBJECTS:
         group = module.__name__.partition(".")[2]
         found = dg.load_assets_from_modules([module], group_name=group)
         assets = [one for one in found if isinstance(one, dg.AssetsDefinition)]
         loaded += [asset.map_asset_specs(describe_table) for asset in assets]
+    require_assets(loaded, TABLES)
     return loaded
+
+
+def require_assets(assets: Iterable[dg.AssetsDefinition], tables: Iterable[str]) -> None:
+    """Raise LookupError unless every table has the asset that makes it.
+
+    Dagster itself would take a table that only others read for one made elsewhere.
+    """
+    made = {key.to_user_string() for asset in assets for key in asset.keys}
+    missing = sorted(set(tables) - made)
+    if missing:
+        raise LookupError(
+            f"no asset makes the table {', '.join(missing)}, which `pipeline/tables/` declares: "
+            "give an asset in `assets/<subject>.py` its name, or name it among the `outs` of one."
+        )
 
 
 ASSETS: Final = load_assets()

@@ -6,6 +6,7 @@ instruments said second by second.
 """
 
 from collections.abc import Mapping, Sequence
+from math import ceil
 from typing import Any, Final
 
 import polars as pl
@@ -13,7 +14,17 @@ from markupsafe import Markup, escape
 
 from dashboards import words
 from dashboards.language import Language
-from dashboards.plot import GREY, INKS, LegendEntry, Plot, Scale, fit_scale, get_ink
+from dashboards.plot import (
+    CHARACTER_WIDTH_PX,
+    GREY,
+    INKS,
+    LegendEntry,
+    Plot,
+    Scale,
+    fit_scale,
+    get_ink,
+    make_standalone,
+)
 from pipeline.history import ERAS
 from pipeline.messages import say
 from pipeline.method.definition import COMPLETE
@@ -89,16 +100,20 @@ def draw_groups(
     return plot.to_svg(caption)
 
 
-LABEL_PX: Final = 62
-"""Room that the label of a group takes."""
+LABEL_GAP_PX: Final = 6
+LABEL_ROW_PX: Final = 14
 
 
 def _label_groups(plot: Plot, names: Sequence[str], width: float) -> None:
-    """Write the name of every group, or of every few where they would touch."""
-    every = max(1, -(-LABEL_PX // max(1, int(width)))) if len(names[0]) > 4 else 1
-    for place, name in enumerate(names):
-        if place % every == 0:
-            plot.add_text(plot.left + (place + 0.5) * width, plot.bottom + 17, name, "middle")
+    """Write the names of groups: in two rows where they would touch, else of every few groups."""
+    label_px = CHARACTER_WIDTH_PX * max(map(len, names)) + LABEL_GAP_PX
+    rows = 1 if label_px <= width else 2
+    every = ceil(label_px / (rows * width))
+    for number, place in enumerate(range(0, len(names), every)):
+        x = plot.left + (place + 0.5) * width
+        furthest = plot.width - 0.5 * label_px
+        y = plot.bottom + 17 + LABEL_ROW_PX * (number % rows)
+        plot.add_text(min(x, furthest), y, names[place], "middle")
 
 
 SEASON_ROW_PX: Final = 26
@@ -433,7 +448,7 @@ def trace_lines(seconds: pl.DataFrame) -> Markup:
                 known = own.drop_nulls(name)
                 points = list(zip(map(x, known["second"]), map(y, known[name]), strict=True))
                 plot.add_line(points, INKS[place], parts=1, style={"stroke-dasharray": dash})
-    return plot.to_svg()
+    return make_standalone(plot.to_svg())
 
 
 def trace_frame(

@@ -253,17 +253,19 @@ class Document:
         wanted = [*shown, *columns.replace("|", " ").split()]
         names = [name for name in dict.fromkeys(wanted) if _says_something(frame[name])]
         titles = {name: get_column(name).title for name in names} | dict(heads or {})
-        head, cells = [], []
-        for name in names:
+        head, cells, looks = [], [], []
+        for place, name in enumerate(names, start=1):
             is_on_phones = "|" not in columns or name in narrow or name in shown
             look = _choose_look(frame[name], is_on_phones)
             title = self.language.say(titles[name])
             head.append((look, title))
+            looks += [f"{one}{place}" for one in look.split()]
             about = frame["fsn_no"] if name == "name" and "fsn_no" in frame.columns else None
-            cells.append(self._write_cells(frame[name], look, about))
+            cells.append(self._write_cells(frame[name], about))
         lines = map("".join, zip(*cells, strict=True))
         made = get_template("table.html.j2").render(
             heads=head,
+            looks=" ".join(looks),
             groups=self._group_rows(frame, chosen_by, lines),
             search=search,
             cards=cards,
@@ -293,15 +295,13 @@ class Document:
             chosen.append((self.show_when(values | {follows[-1]: last}), list(own)))
         return chosen
 
-    def _write_cells(self, cells: pl.Series, look: str, about: pl.Series | None) -> list[str]:
+    def _write_cells(self, cells: pl.Series, about: pl.Series | None) -> list[str]:
         """Return the cells of a column.
 
         Args:
             cells: the column.
-            look: class of its cells.
             about: the number of the boat that each cell names, if it does.
         """
-        attributes = f" class={look}" if look else ""
         known: dict[str, Markup] = {}  # the same text comes often
 
         def write(value: Any) -> Markup:
@@ -312,11 +312,11 @@ class Document:
             return known[value]
 
         if about is None:
-            return [f"<td{attributes}>{write(value)}" for value in cells.to_list()]
+            return [f"<td>{write(value)}" for value in cells.to_list()]
         written = []
         for name, boat in zip(cells.to_list(), about.to_list(), strict=True):
             link = _write_link(self._link("fsn_no", boat), write(name)) if name else ""
-            written.append(f"<td{attributes}>{link}")
+            written.append(f"<td>{link}")
         return written
 
     def _write_cell(self, name: str, value: Any) -> Markup:
@@ -362,12 +362,15 @@ def _to_frame(rows: Sequence[Mapping[str, Any]]) -> pl.DataFrame:
 
 
 def _choose_look(cells: pl.Series, is_on_phones: bool) -> str:
-    """Return the class of cells: `t` a text, `w` a text of several lines, `p` not on phones."""
-    is_number = cells.dtype.is_numeric() and cells.name != "direction"
-    own = "" if is_number else "w" if WIDE_COLUMNS.search(cells.name) else "t"
-    if is_on_phones:
-        return own
-    return f'"{own} p"' if own else "p"
+    """Return the classes of a column: `t` a text, `w` also of several lines, `p` not on phones."""
+    looks = []
+    if not cells.dtype.is_numeric() or cells.name == "direction":
+        looks.append("t")
+        if WIDE_COLUMNS.search(cells.name):
+            looks.append("w")
+    if not is_on_phones:
+        looks.append("p")
+    return " ".join(looks)
 
 
 def _says_something(cells: pl.Series) -> bool:

@@ -26,7 +26,7 @@ def get_ink(kind: int) -> str:
 
 
 SHAPES: Final = (
-    "m-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0z",  # circle
+    "",  # circle: an element of its own
     "m-3.6 -3.6h7.2v7.2h-7.2z",  # square
     "m0 -4.8l4.6 8.2h-9.2z",  # triangle
     "m0 -5.2l4.4 5.2l-4.4 5.2l-4.4 -5.2z",  # diamond
@@ -44,6 +44,12 @@ BULK_QUARTILES: Final = 2.0
 that one boat does not squeeze all others."""
 
 FONT_SIZE_PX: Final = 12
+
+STANDALONE_LOOKS: Final = (
+    'xmlns="http://www.w3.org/2000/svg" fill="currentColor" font-family="Open Sans, sans-serif" '
+    f'font-size="{FONT_SIZE_PX}"'
+)
+"""What a picture needs outside a page; the style sheet of pages says it once for all of theirs."""
 
 TICKS: Final = 5
 """About as many ticks as an axis has."""
@@ -147,6 +153,14 @@ def _place_legend(
         placed.append((entry, x, row))
         x += entry_width
     return placed
+
+
+def make_standalone(svg: str) -> Markup:
+    """Return a picture of a page as a file, or a part of a PDF, can have it."""
+    plain = str(svg)  # markup would escape what replaces
+    if "xmlns=" not in plain:
+        plain = plain.replace("<svg ", f"<svg {STANDALONE_LOOKS} ", 1)
+    return Markup(plain)  # noqa: S704 - our own
 
 
 class Mark(NamedTuple):
@@ -307,8 +321,10 @@ class Plot:
         """
         colour = ink or get_ink(kind)
         fill, shape = colour if filled else "none", SHAPES[kind % len(SHAPES)]
-        place = f' d="M{round(x, 1):g} {round(y, 1):g}{shape}"'
-        mark = Mark("path", place, f' fill="{fill}" stroke="{colour}"', _write_tip(tip))
+        tag, place = "path", f' d="M{round(x, 1):g} {round(y, 1):g}{shape}"'
+        if not shape:
+            tag, place = "circle", f' cx="{round(x, 1):g}" cy="{round(y, 1):g}" r="4"'
+        mark = Mark(tag, place, f' fill="{fill}" stroke="{colour}"', _write_tip(tip))
         if page:
             self._has_links = True
             link = f' href="{escape(page)}" aria-label="{escape(tip)}"'
@@ -330,7 +346,7 @@ class Plot:
         points: Sequence[tuple[float, float]],
         ink: str,
         *,
-        parts: int = 10,
+        parts: int = 2,
         style: Mapping[str, str | float | None] = NO_STYLE,
     ) -> None:
         """Add a line through points [px], each to so many parts of a pixel."""
@@ -367,13 +383,14 @@ class Plot:
             self.add_text(left + 9, y + 4, entry.name)
 
     def to_svg(self, caption: str = "") -> Markup:
-        """Return the picture; a screen reader says its caption, and skips one without."""
+        """Return the picture as a part of a page, whose style sheet has `STANDALONE_LOOKS`.
+
+        A screen reader says its caption, and skips one without.
+        """
         role = "group" if self._has_links else "img"  # an image has no parts that can be reached
         label = f'role="{role}" aria-label="{escape(caption)}"' if caption else 'aria-hidden="true"'
         return Markup(  # noqa: S704 - texts were escaped
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {self.width} {self.height}" '
-            f'{label} fill="currentColor" font-family="Open Sans, sans-serif" '
-            f'font-size="{FONT_SIZE_PX}">'
+            f'<svg viewBox="0 0 {self.width} {self.height}" {label}>'
             f"{''.join(self._write_marks())}</svg>"
         )
 

@@ -10,6 +10,8 @@ from html import escape
 from html.parser import HTMLParser
 from typing import Final
 
+from dashboards.plot import make_standalone
+
 SKIPPED_TAGS: Final = ("head", "header", "form", "footer", "button", "summary", "nav")
 """Parts of a page that say nothing elsewhere."""
 
@@ -120,13 +122,12 @@ class _Reader(HTMLParser):
 
     def _is_left_out(self, tag: str, own: dict[str, str | None]) -> bool:
         classes = (own.get("class") or "").split()
-        is_title_of_column = tag == "button" and self.blocks and self.blocks[-1].kind == "table"
         is_title_of_fold = tag == "summary" and self._folded
         return (
             "hidden" in own
             or any(name in SKIPPED_CLASSES for name in classes)
             or (tag == "details" and not self._folded)
-            or (tag in SKIPPED_TAGS and not is_title_of_column and not is_title_of_fold)
+            or (tag in SKIPPED_TAGS and not is_title_of_fold)
         )
 
     def _begin(self, tag: str, own: dict[str, str | None]) -> None:
@@ -237,7 +238,7 @@ class _Reader(HTMLParser):
         is_in_table = bool(self.blocks) and self.blocks[-1].look == "steps"
         if not self._left_out and not is_in_table:
             shown = caption[1] if caption else ""
-            self.blocks.append(Block("picture", self._svg, caption=shown))
+            self.blocks.append(Block("picture", make_standalone(self._svg), caption=shown))
         self._svg = ""
 
 

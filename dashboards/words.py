@@ -105,6 +105,7 @@ CODES: Final[dict[str, Sentence]] = {
     "sound": say("sound"),
     "would not show": say("would not show"),
     "not told": say("not told"),
+    "no_change": say("no change shown"),
     "not determined": say("not determined"),
     "not settled": say("not settled"),
     "gps": say("GPS"),

@@ -41,5 +41,7 @@ def differ_beyond_intervals(
         one, other: a number, and the lower and upper end of its interval. Half widths are added as
             independent errors are: the root of the sum of squares.
     """
-    half_widths = [0.5 * (upper - lower) for _, lower, upper in (one, other)]
-    return abs(one[0] - other[0]) > hypot(*half_widths)
+    value, lower, upper = one
+    other_value, other_lower, other_upper = other
+    half_width = hypot(0.5 * (upper - lower), 0.5 * (other_upper - other_lower))
+    return abs(value - other_value) > half_width

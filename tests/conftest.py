@@ -170,7 +170,8 @@ def snapshot(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
         kept = Path(__file__).parent / "data" / "texts" / f"{name}.txt"
         if request.config.getoption("snapshot_update"):
             kept.write_text(text, encoding="utf-8")
-        assert text == kept.read_text(encoding="utf-8")
+        update = "If that is meant, run `pytest --snapshot-update` and look at what changed."
+        assert text == kept.read_text(encoding="utf-8"), update
 
     return hold
 

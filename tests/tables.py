@@ -1,6 +1,7 @@
 """Tables of an archive up to the registers, made without Dagster: what editions are made from."""
 
 import datetime as dt
+import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,6 +15,14 @@ from warehouse.derive.recomputing import ArchiveRuns, recompute_archive
 from warehouse.derive.registers import published_tables, register_tables
 from warehouse.store.decisions import FILE_NAME, read_decisions, tabulate_decisions
 from warehouse.store.store import Store
+
+
+def digest_table(frame: pl.DataFrame) -> str:
+    """Return a hash of a table's values as they are read: 13 significant digits, in row order."""
+    lists = [c for c, dtype in frame.schema.items() if isinstance(dtype, pl.List)]
+    flat = frame.with_columns(pl.col(lists).list.join("\x1f")) if lists else frame
+    text = flat.write_csv(float_scientific=True, float_precision=12)
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def make_tables(store: Store, archive: Path, methods: Sequence[Method], today: dt.date) -> None:

@@ -8,12 +8,12 @@ import ast
 import io
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from string import Formatter
 
 import jinja2
-from babel.messages.catalog import Catalog
+from babel.messages.catalog import Catalog, Message
 from babel.messages.pofile import read_po, write_po
 from jinja2 import nodes
 
@@ -151,12 +151,23 @@ def as_file(texts: Catalog) -> bytes:
     return file.getvalue()
 
 
+def without_dutch(texts: Iterable[Message]) -> list[str]:
+    """The texts that have no Dutch yet, or of one about several not both forms."""
+    bare = [m.id for m in texts if m.id and not (m.string and all(m.string))]
+    return [text if isinstance(text, str) else text[0] for text in bare]
+
+
 def main(arguments: list[str]) -> None:
-    """Writes the catalogue; with `--check`, ends with 1 where that would change it."""
-    made = as_file(catalogue())
+    """Writes the catalogue and says what has no Dutch.
+
+    With `--check` it writes nothing, and ends with 1 where either asks for work.
+    """
+    texts = catalogue()
+    made, bare = as_file(texts), without_dutch(texts)
     if "--check" not in arguments:
         PO.write_bytes(made)
-    elif made != PO.read_bytes():
+        sys.stdout.writelines(f"Without Dutch in {PO.relative_to(ROOT)}: {text}\n" for text in bare)
+    elif made != PO.read_bytes() or bare:
         sys.exit(f"The texts have changed. {WHAT_TO_DO}")
 
 

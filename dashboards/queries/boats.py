@@ -90,6 +90,7 @@ def read_boat(
         "curves": curves,
         "steps": _tabulate_steps(own_steps(results, fsn_no, shown)),
         "runs": runs.with_columns(run_cw_kg_m="cw_kg_m"),
+        "currents": own("tow_currents"),
         "budget": budget.sort("u_ratio", descending=True, maintain_order=True),
         "in_type": own("compared_tows"),
         "repeat_pairs": own("repeat_pairs").with_columns(cw_ratio=pl.col("ln_ratio").exp()),

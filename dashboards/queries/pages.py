@@ -211,13 +211,15 @@ def read_years(results: Results, method: str | None = None) -> Data:
 
     Args:
         results: the tables.
-        method: the method that is shown first; that of `Results.method` when left out.
+        method: the method that is shown first, also beside `Results.compared_methods`; that of
+            `Results.method` when left out.
 
     Raises:
         MissingKnowledgeError: the method was not applied by the last rebuild.
     """
     views, chosen = results.views, method or results.method
-    is_shown = pl.col("method").is_in([*results.methods, chosen])
+    shown = list(dict.fromkeys([*results.compared_methods, chosen]))
+    is_shown = pl.col("method").is_in(shown)
     lines = views.ask("register_years").filter(is_shown)
     if method is not None and lines.filter(method=method).is_empty():
         raise MissingKnowledgeError("method {} was not applied by the last rebuild", method)
@@ -236,7 +238,7 @@ def read_years(results: Results, method: str | None = None) -> Data:
         "lines": lines,
         "changed_lines": lines.filter(pl.col("change") != "same"),
         "winners": views.ask("year_winners").filter(is_shown),
-        "methods": results.methods,
+        "methods": shown,
         "names": [str(year) for year in years["year"].unique().sort()],
         "chosen": {"method": chosen, "year": str(most_changed["year"] if most_changed else 0)},
     }

@@ -40,9 +40,22 @@
     other.href = `${other.getAttribute("href").split("?")[0]}?${asked}`;
   }
 
-  // Tables: a click on a heading sorts; numbers have no class.
+  // Tables: what needs this script, it adds. A click on a heading sorts; the headings of texts have a class.
+  function equip(table) {
+    const make = (tag, own, ...parts) => { const made = Object.assign(document.createElement(tag), own); made.append(...parts); return made; };
+    const { search, rows, csv } = document.documentElement.dataset;
+    const tools = make("div", { className: "tools" });
+    if ("search" in table.dataset) tools.append(make("label", {}, `${search} `, make("input", { type: "search", autocomplete: "off" })));
+    const count = make("span", {}, `${rows} `, make("b"));
+    count.setAttribute("role", "status");
+    tools.append(count, make("button", { type: "button", className: "csv", title: csv }, "CSV"));
+    table.prepend(tools);
+    for (const head of all("thead th", table)) head.append(make("button", { type: "button" }, ...head.childNodes));
+  }
+
   function value(cell) {
-    if (cell.className.match(/t|w/) || cell.textContent === "") return cell.textContent;
+    const isText = cell.closest("table").tHead.rows[0].cells[cell.cellIndex].classList.contains("t");
+    if (isText || cell.textContent === "") return cell.textContent;
     const number = Number(cell.textContent.replace(DECIMAL, ".").replace("\u2212", "-").replace(/[\u00a0%]/g, ""));
     return Number.isNaN(number) ? cell.textContent : number;
   }
@@ -126,6 +139,7 @@
   }
 
   function start() {
+    all(".table:not(:has(.tools))").forEach(equip);
     all("table.cards").forEach(label);
     selects = own();
     first = new Map(selects.map((one) => [one.name, one.value]));

@@ -26,6 +26,7 @@ BOAT_FIELDS: Final = (
     "curves",
     "steps",
     "runs",
+    "currents",
     "budget",
     "checks",
     "acceptances",

@@ -27,14 +27,6 @@ from pipeline.errors import HerijkError, unexpected
 from pipeline.messages import LANGUAGE, say, spoken, tell
 from warehouse.store.machine_faults import REASSURANCE, explain_machine_faults
 
-SECTIONS: Final = {
-    say("Begin"): ("init", "check", "rebuild", "simulate"),
-    say("Look"): ("assess", "audit", "register", "seasons", "workbench"),
-    say("Change the method"): ("methods", "compare"),
-    say("Publish"): ("publish", "verify", "export"),
-    say("Run it as a service"): ("serve", "completion"),
-}
-
 INTERRUPTED: Final = 130
 """The exit status after Ctrl-C or SIGTERM: 128 and the number of SIGINT."""
 
@@ -55,7 +47,7 @@ def _show_version(context: click.Context, _: click.Parameter, wanted: bool) -> N
         context.exit()
 
 
-@click.group(cls=Group, sections=SECTIONS)
+@click.group(cls=Group)
 @option(
     "--version",
     is_flag=True,
@@ -80,10 +72,11 @@ def completion(shell: str) -> None:
     click.echo(complete(app, {}, "herijk", "_HERIJK_COMPLETE").source())
 
 
-for _command in (init, check, rebuild, simulate, assess, audit, register, seasons, workbench):
-    app.add_command(_command)
-for _command in (methods, compare, publish, verify, export, serve, completion):
-    app.add_command(_command)
+app.add_section(say("Begin"), init, check, rebuild, simulate)
+app.add_section(say("Look"), assess, audit, register, seasons, workbench)
+app.add_section(say("Change the method"), methods, compare)
+app.add_section(say("Publish"), publish, verify, export)
+app.add_section(say("Run it as a service"), serve, completion)
 
 
 def main() -> None:
@@ -105,10 +98,16 @@ def main() -> None:
     except SystemExit:
         raise
     except BaseException as error:  # a panic of a library in Rust is no Exception
-        if type(error).__name__ == "DagsterExecutionInterruptedError":
+        if _is_interrupt(error):
             _stopped()
         click.echo(f"herijk: {_written_down(error)}", err=True)
         sys.exit(1)
+
+
+def _is_interrupt(error: BaseException) -> bool:
+    """Return whether an error is what a library makes of Ctrl-C or SIGTERM."""
+    is_query = type(error) is RuntimeError and str(error) == "Query interrupted"  # by DuckDB
+    return is_query or type(error).__name__ == "DagsterExecutionInterruptedError"
 
 
 def _stopped() -> NoReturn:

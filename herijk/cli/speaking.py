@@ -13,13 +13,10 @@ from typing import Any, Final
 
 import click
 
-from pipeline.messages import CATALOGUES, DOMAIN, LANGUAGE, LANGUAGES, say, tell
+from pipeline.messages import CATALOGUES, DOMAIN, LANGUAGE, LANGUAGES, Sentence, say, tell
 
 HELP: Final = "Show this message and exit."
 EXAMPLES: Final = say("Examples")
-
-Sections = Mapping[str, Sequence[str]]
-"""Names of commands under the heading below which the overview lists them."""
 
 
 def language_of(arguments: Sequence[str], environment: Mapping[str, str]) -> str:
@@ -88,9 +85,15 @@ class Group(Command, click.Group):
 
     command_class = Command
 
-    def __init__(self, *given: Any, sections: Sections | None = None, **settings: Any) -> None:
+    def __init__(self, *given: Any, **settings: Any) -> None:
         super().__init__(*given, **settings)
-        self.sections = sections
+        self.sections: dict[str, list[str]] = {}
+
+    def add_section(self, heading: Sentence, *commands: click.Command) -> None:
+        """Add commands below a heading of the overview."""
+        for command in commands:
+            self.add_command(command)
+        self.sections[heading] = [command.name or "" for command in commands]
 
     def make_context(
         self,

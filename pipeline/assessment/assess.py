@@ -12,7 +12,7 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.assessment.checks import CHECKS, CODES, WAYS_LIMIT, Check
+from pipeline.assessment.checks import CHECK, CHECKS, CODES, WAYS_LIMIT, Check
 from pipeline.assessment.comparisons import (
     add_boats,
     compare_with_best_estimate,
@@ -23,6 +23,7 @@ from pipeline.assessment.comparisons import (
     doubt_seasons,
     estimate_log_slopes,
 )
+from pipeline.assessment.currents import CANNOT_BE_TOLD, CHANGED
 from pipeline.assessment.run_measures import summarize_runs
 from pipeline.choice import SAME_SHARE
 from pipeline.quantiles import MAD_TO_SD
@@ -41,8 +42,21 @@ HALF_STEP_RATIO: Final = pl.max_horizontal(
 of speed counts twice. That of a GPS counts only where it calibrates the tow."""
 
 
+CLEAR_CHANGE: Final = (
+    pl.when(current_verdict=CHANGED)
+    .then(pl.col("current_change_m_s").abs())
+    .when(pl.col("current_verdict") != CANNOT_BE_TOLD)
+    .then(0.0)
+)
+"""Change of the current from out to back [m/s]; 0 where chance explains it."""
+
+
 def assess(
-    curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
+    curves: pl.DataFrame,
+    run_points: pl.DataFrame,
+    tows: pl.DataFrame,
+    diagnosis: pl.DataFrame,
+    currents: pl.DataFrame,
 ) -> pl.DataFrame:
     """Return every check of every tow with what was observed and what it is compared with.
 
@@ -50,6 +64,7 @@ def assess(
         curves, run_points: the tables of one method, curves without `status` and `flags`.
         tows: `Tows.frame`, with what is expected of the water.
         diagnosis: rows of `season_diagnosis` of that method.
+        currents: rows of `tow_currents` of that method.
 
     Returns:
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
@@ -63,6 +78,7 @@ def assess(
         runs,
         doubt_seasons(curves, tows, diagnosis),
         estimate_log_slopes(curves, run_points),
+        currents.select("tow_id", current_change_m_s=CLEAR_CHANGE),
         compare_with_previous(boats, curves, diagnosis),
         compare_with_best_estimate(curves),
         compare_with_season_and_type(boats),
@@ -84,10 +100,8 @@ def _widen_limit_of_ways(runs: pl.DataFrame) -> tuple[Check, ...]:
     difference = (pl.col("out_over_back") - 1.0).abs().median().fill_null(0.0)
     spread = MAD_TO_SD * float(runs.select(difference).item())
     limit = max(WAYS_LIMIT, MIN_WAYS_SD * spread)
-    return tuple(
-        c._replace(lowest=-limit, highest=limit) if c.code == "out_and_back_differ" else c
-        for c in CHECKS
-    )
+    widened = CHECK["out_and_back_differ"]._replace(lowest=-limit, highest=limit)
+    return tuple((CHECK | {widened.code: widened}).values())
 
 
 def apply_checks(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.DataFrame:
@@ -106,8 +120,12 @@ def apply_checks(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.Dat
     nearer = (highest - x) - (x - lowest) > SAME_SHARE * (highest - lowest)
     nearer_lowest = highest.is_null() | nearer
     index = ("method", "tow_id", "season", "crew_class")
+    measured = []
+    for check in checks:
+        number = pl.sql_expr(check.measured).cast(pl.Float64)
+        measured.append(number.alias(check.code))
     return (
-        tows.select(*index, *(_measure(check) for check in checks))
+        tows.select([pl.col(index)] + measured)
         .filter(pl.col("method").is_not_null())
         .unpivot(index=index, variable_name="check", value_name="observed")
         .filter(x.is_finite())
@@ -126,19 +144,32 @@ def apply_checks(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.Dat
     )
 
 
-def _measure(check: Check) -> pl.Expr:
-    return pl.sql_expr(check.measured).cast(pl.Float64).alias(check.code)
-
-
 def _list_limits(checks: Sequence[Check]) -> pl.DataFrame:
-    rows = [
-        (c.code, crew_class, *c.limits(crew_class), c.unit, c.severity, c.last_season)
-        for c in checks
-        for crew_class in ("H", "D")
-    ]
-    names = ("check", "crew_class", "lowest", "highest", "unit", "severity", "last_season")
-    schema = dict.fromkeys(names, pl.String()) | dict.fromkeys(names[2:4], pl.Float64())
-    return pl.DataFrame(rows, schema=schema | {"last_season": pl.Int32()}, orient="row")
+    """Return the limits of each check for each class, with what else a check declares."""
+    rows = []
+    for check in checks:
+        for crew_class in ("H", "D"):
+            lowest, highest = check.limits(crew_class)
+            row = {
+                "check": check.code,
+                "crew_class": crew_class,
+                "lowest": lowest,
+                "highest": highest,
+                "unit": check.unit,
+                "severity": check.severity,
+                "last_season": check.last_season,
+            }
+            rows.append(row)
+    schema = {
+        "check": pl.String(),
+        "crew_class": pl.String(),
+        "lowest": pl.Float64(),
+        "highest": pl.Float64(),
+        "unit": pl.String(),
+        "severity": pl.String(),
+        "last_season": pl.Int32(),
+    }
+    return pl.DataFrame(rows, schema)
 
 
 def add_status(

@@ -52,11 +52,17 @@ def _get_limit(limit: Limit, crew_class: str) -> float | None:
     return limit[crew_class] if isinstance(limit, dict) else limit
 
 
-POWER_W: Final = ({"H": 70.0, "D": 40.0}, {"H": 90.0, "D": 55.0})
+LOWEST_POWER_W: Final = {"H": 70.0, "D": 40.0}
+HIGHEST_POWER_W: Final = {"H": 90.0, "D": 55.0}
+"""Ends of the power per rower at a realistic tow speed."""
+LIGHTEST_ROWER_KG: Final = {"H": 81.0, "D": 64.0}
+HEAVIEST_ROWER_KG: Final = {"H": 114.0, "D": 90.0}
 WAYS_LIMIT: Final = 0.05
 """Least difference of Cw out from Cw back that is marked; more where all tows of an archive differ
 (`assess`)."""
-ROWER_KG: Final = ({"H": 81.0, "D": 64.0}, {"H": 114.0, "D": 90.0})
+MIN_CURRENT_CHANGE_M_S: Final = 0.1
+"""Change of the current from out to back that matters: 2 % of the calibrated speed, and so 4 to 5 %
+of Cw (inferred)."""
 
 
 def _make_plausibility_check(code: str, sentence: Sentence) -> Check:
@@ -81,6 +87,14 @@ CHECKS: Final = (
     ),
     Check("unusual_calibration", "calibration_factor", say("unusual calibration"), 0.98, 1.02),
     Check("log_not_linear", "log_slope", say("log not in proportion"), -0.015, 0.015),
+    Check(
+        "current_changed",
+        "current_change_m_s",
+        say("current changed, or log read otherwise"),
+        None,
+        MIN_CURRENT_CHANGE_M_S,
+        unit="m/s",
+    ),
     # The samples beside all other tows
     _make_plausibility_check("force_not_plausible", say("force cannot be right")),
     _make_plausibility_check("wind_not_plausible", say("wind cannot be right")),
@@ -117,14 +131,20 @@ CHECKS: Final = (
         "power_outside_range",
         "power_w",
         say("power outside range"),
-        *POWER_W,
+        LOWEST_POWER_W,
+        HIGHEST_POWER_W,
         unit="W",
         severity="note",
     ),
     Check("slow_tow", "power_w", say("slow tow"), SLOW_POWER_W, unit="W"),
     # The boat of the day
     Check(
-        "crew_weight", "crew_weight_kg / rowers", say("crew weight unusual"), *ROWER_KG, unit="kg"
+        "crew_weight",
+        "crew_weight_kg / rowers",
+        say("crew weight unusual"),
+        LIGHTEST_ROWER_KG,
+        HEAVIEST_ROWER_KG,
+        unit="kg",
     ),
     Check(
         "weight_not_recorded",

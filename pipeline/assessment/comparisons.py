@@ -3,7 +3,7 @@
 Each function returns a row per tow with the columns that `checks` reads.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Final
 
 import numpy as np
@@ -35,7 +35,6 @@ MIN_LN_SPEED_SQUARES: Final = 0.004
 """Least sum of squares of ln speed, about the mean of a direction, over the runs of a tow."""
 
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
-LISTED: Final = {"waterline_length_m": "listed_length_m", "beam_m": "listed_beam_m"}
 
 
 def compare_with_papers(tows: pl.DataFrame) -> pl.DataFrame:
@@ -44,17 +43,19 @@ def compare_with_papers(tows: pl.DataFrame) -> pl.DataFrame:
     Null for a boat that was ever altered, and after a reported alteration, which explain it.
     """
 
-    def before(column: str) -> pl.Expr:
-        return pl.col(column).shift(1).over("fsn_no", order_by=["tow_date", "tow_id"])
+    def before(columns: Sequence[str]) -> pl.Expr:
+        return pl.col(columns).shift(1).over("fsn_no", order_by=["tow_date", "tow_id"])
 
     same, altered = ~pl.col("altered"), pl.col("altered").any().over("fsn_no")
-    off = [(pl.col(own) / pl.col(listed) - 1).abs() for own, listed in LISTED.items()]
-    moved = pl.max_horizontal((pl.col(c) - before(c)).abs() for c in FREEBOARDS)
+    length_off = (pl.col("waterline_length_m") / pl.col("listed_length_m") - 1).abs()
+    beam_off = (pl.col("beam_m") / pl.col("listed_beam_m") - 1).abs()
+    freeboard_change = pl.max_horizontal((pl.col(FREEBOARDS) - before(FREEBOARDS)).abs())
+    size_change = pl.col(SIZES) / before(SIZES) - 1
     return tows.select(
         "tow_id",
-        pl.when(~altered).then(pl.max_horizontal(off)).alias("off_boat_list"),
-        pl.when(same).then(moved).alias("freeboard_change_m"),
-        *(pl.when(same).then(pl.col(c) / before(c) - 1).alias(f"{c}_change") for c in SIZES),
+        pl.when(same).then(size_change).name.suffix("_change"),
+        off_boat_list=pl.when(~altered).then(pl.max_horizontal(length_off, beam_off)),
+        freeboard_change_m=pl.when(same).then(freeboard_change),
     )
 
 
@@ -67,12 +68,15 @@ def add_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     follows wetted surface. `s_s2_m2` is 1/B^2, also of a flat or falling curve, from A and Cw at
     the declared speed.
     """
-    of_tow = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
+    of_tow = tows.select(
+        "tow_id", "boat_type", "tow_date", "altered",
+        "waterline_length_m", "weight_kg", "crew_weight_kg",
+    )  # fmt: skip
     displacement = pl.col("weight_kg") + pl.col("crew_weight_kg")
     best_ratio = (pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).fill_null(1.0)
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
-        .join(tows.select("tow_id", "boat_type", *of_tow), on="tow_id", maintain_order="left")
+        .join(of_tow, on="tow_id", maintain_order="left")
         .with_columns(
             pl.col("a_kg_m", "cw_kg_m") * best_ratio,
             is_best=pl.col("cw_best_kg_m").is_not_null(),
@@ -106,9 +110,9 @@ def doubt_seasons(
     seasons = diagnosis.group_by("season", maintain_order=True).agg(
         season_in_doubt=(pl.col("alarm") & (pl.col("verdict") != CANNOT_BE_TOLD)).any()
     )
-    doubted = seasons.filter("season_in_doubt")["season"]
-    anchors = {*_list_calibrated_seasons(curves)} & {*seasons["season"]}
-    if anchors and anchors <= {*doubted}:
+    doubted = set(seasons.filter("season_in_doubt")["season"])
+    anchors = set(_list_calibrated_seasons(curves)) & set(seasons["season"])
+    if anchors and anchors <= doubted:
         estimated = diagnosis.filter(verdict="estimated")["season"]
         rests = pl.col("season").is_in(estimated.implode())
         seasons = seasons.with_columns(pl.col("season_in_doubt") | rests)
@@ -132,7 +136,7 @@ def estimate_log_slopes(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.Da
     mean over the season, 0 where chance explains it.
     """
     ways, slope = ["tow_id", "direction"], pl.col("slope")
-    x, y = (pl.col(name).log() for name in ("speed_m_s", "gps_ratio"))
+    x, y = pl.col("speed_m_s").log(), pl.col("gps_ratio").log()
     of_tows = (
         run_points.filter("used", pl.col("gps_ratio") > 0)
         .select("tow_id", x=x - x.mean().over(ways), y=y - y.mean().over(ways))
@@ -211,11 +215,9 @@ def _estimate_season_levels(changes: pl.DataFrame, to_scale: Collection[int]) ->
         to_scale: seasons whose level is 0.
     """
     between = changes.filter(pl.col("season") != pl.col("before"))
-    ends = (("season", "before", 1.0), ("before", "season", -1.0))
-    rows = pl.concat(
-        between.select(here=pl.col(here), there=pl.col(there), ln=sign * pl.col("ln"))
-        for here, there, sign in ends
-    )
+    forward = between.select(here="season", there="before", ln="ln")
+    backward = between.select(here="before", there="season", ln=-pl.col("ln"))
+    rows = pl.concat([forward, backward])
     seasons, place = np.unique(rows[["here", "there"]].to_numpy(), return_inverse=True)
     here, there = place.reshape(-1, 2).T
     free = np.bincount(here, minlength=len(seasons)) >= MIN_CHANGES
@@ -223,7 +225,8 @@ def _estimate_season_levels(changes: pl.DataFrame, to_scale: Collection[int]) ->
     level, ln = np.zeros(len(seasons)), rows["ln"].to_numpy()
     for _ in range(POLISH_ROUNDS):
         apart = ln + level[there] - level[here]
-        level += [0.5 * np.median(apart[here == s]) if free[s] else 0.0 for s in range(len(level))]
+        for season in np.flatnonzero(free):
+            level[season] += 0.5 * np.median(apart[here == season])
     return dict(zip(seasons[free].tolist(), level[free].tolist(), strict=True))
 
 
@@ -233,7 +236,8 @@ def _list_calibrated_seasons(curves: pl.DataFrame) -> pl.Series:
 
 def _list_seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:
     """Return the seasons whose logs are on the scale of GPS: calibrated, or estimated."""
-    return {*_list_calibrated_seasons(curves), *diagnosis.filter(verdict="estimated")["season"]}
+    estimated = diagnosis.filter(verdict="estimated")["season"]
+    return set(_list_calibrated_seasons(curves)) | set(estimated)
 
 
 def compare_with_type(
@@ -251,12 +255,13 @@ def compare_with_type(
     ).drop_nulls(["boat_type", "size"])
     is_first = pl.int_range(pl.len()).over(LINE) == 0
     firsts = boats.filter(is_first | pl.col("altered"))["tow_id"]
-    others = to_scale.unique(["fsn_no", *LIKE], keep="last", maintain_order=True).select(
-        *LIKE, "a_kg_m", "s_s2_m2", other_fsn_no="fsn_no", other_size="size"
+    last_tows = to_scale.unique(("fsn_no",) + LIKE, keep="last", maintain_order=True)
+    others = last_tows.select(
+        pl.col(LIKE), "a_kg_m", "s_s2_m2", other_fsn_no="fsn_no", other_size="size"
     )
     return (
         to_scale.filter(pl.col("tow_id").is_in(firsts.implode()))
-        .select("tow_id", *LIKE, "fsn_no", "size", "cw_kg_m", speed="declared_speed_m_s")
+        .select("tow_id", pl.col(LIKE), "fsn_no", "size", "cw_kg_m", speed="declared_speed_m_s")
         .join(others, on=LIKE, maintain_order="left")
         .filter(pl.col("fsn_no") != pl.col("other_fsn_no"))
         .with_columns(

@@ -37,6 +37,7 @@ JUDGED_BY: Final[dict[str, tuple[Rule, Verdict]]] = {
     "runs_set_aside": ("no_malfunction", "tow_again"),
     "unusual_calibration": ("no_malfunction", "look"),
     "log_not_linear": ("no_malfunction", "look"),
+    "current_changed": ("plausible", "look"),
     "season_in_doubt": ("no_malfunction", "look"),
     "coarse_readings": ("no_malfunction", "look"),
     "log2_differs": ("no_malfunction", "look"),
@@ -165,14 +166,12 @@ def assess_first(tow: QuayTow) -> dy.DataFrame[FirstAssessment]:
 
     A rule that finds nothing has one row with an empty `finding`.
     """
-    findings = [
-        *_judge_checks(tow),
-        *_judge_set_aside(tow),
-        *_judge_runs(tow),
-        *_judge_runs_not_planned(tow),
-        *_judge_choice(tow),
-        *_judge_change(tow),
-    ]
+    findings = list(_judge_checks(tow))
+    findings += _judge_set_aside(tow)
+    findings += _judge_runs(tow)
+    findings += _judge_runs_not_planned(tow)
+    findings += _judge_choice(tow)
+    findings += _judge_change(tow)
     made = {JUDGED_BY[check][0] for check in tow.assessments["check"] if check not in ALONE}
     made |= ALWAYS_MADE
     rows: list[Row] = []
@@ -197,7 +196,8 @@ def get_runs_to_redo(assessment: pl.DataFrame) -> list[int] | None:
     again = assessment.filter(verdict="tow_again")
     if (again["runs"].list.len() == 0).any():
         return None
-    return sorted({int(run) for runs in again["runs"] for run in runs})
+    runs: list[int] = again["runs"].explode().drop_nulls().unique().sort().to_list()
+    return runs
 
 
 def explain_by_size(new: Row, old: Row) -> float | None:
@@ -206,15 +206,12 @@ def explain_by_size(new: Row, old: Row) -> float | None:
     Cw goes with sqrt(displacement x waterline length), as in `pipeline.assessment.assess`. None
     where a weight is not known.
     """
-    sizes = [
-        None
-        if one["weight_kg"] is None or one["crew_weight_kg"] is None
-        else (one["weight_kg"] + one["crew_weight_kg"]) * one["waterline_length_m"]
-        for one in (new, old)
-    ]
-    if sizes[0] is None or sizes[1] is None:
+    weights = (new["weight_kg"], new["crew_weight_kg"], old["weight_kg"], old["crew_weight_kg"])
+    if None in weights:
         return None
-    return float(np.sqrt(sizes[0] / sizes[1])) - 1.0
+    new_size = (new["weight_kg"] + new["crew_weight_kg"]) * new["waterline_length_m"]
+    old_size = (old["weight_kg"] + old["crew_weight_kg"]) * old["waterline_length_m"]
+    return float(np.sqrt(new_size / old_size)) - 1.0
 
 
 # What the rules find
@@ -223,7 +220,10 @@ def explain_by_size(new: Row, old: Row) -> float | None:
 def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
     """Yield a finding for every check that marks the tow, but for a better one of `_judge_runs`."""
     in_other_order = bool(_find_runs_in_other_order(tow))
-    off_curve = [run for one in find_runs_off_curve(tow.run_points) for run in one.runs]
+    off_curve: list[int] = []
+    for one in find_runs_off_curve(tow.run_points):
+        off_curve += one.runs
+    lost_runs = tow.set_aside.filter(lost="run")["run"].drop_nulls().unique().sort().to_list()
     for row in tow.assessments.filter("flagged").iter_rows(named=True):
         check = row["check"]
         if check == "off_target_speed" and in_other_order:
@@ -236,7 +236,7 @@ def _judge_checks(tow: QuayTow) -> Iterator[Finding]:
         elif check == "out_and_back_differ":
             runs = off_curve
         elif check == "runs_set_aside":
-            runs = _list_lost_runs(tow)
+            runs = lost_runs
         of_others = tow.others_of_season.filter(check=check)
         others_median = _take_median(of_others["observed"])
         if (
@@ -283,17 +283,19 @@ def _add_sizes(found: Finding, tow: QuayTow) -> Finding:
     )
 
 
-def _list_lost_runs(tow: QuayTow) -> list[int]:
-    return sorted(tow.set_aside.filter(lost="run")["run"].drop_nulls().unique().to_list())
-
-
 def _judge_set_aside(tow: QuayTow) -> Iterator[Finding]:
     """Yield what is set aside of the tow besides whole runs: seconds, channels, cells of lists."""
     rest = tow.set_aside.filter(pl.col("lost") != "run")
     if not rest.is_empty():
-        runs = sorted(rest["run"].drop_nulls().unique().to_list())
-        count = float(rest.height)
-        yield Finding("no_malfunction", "parts_set_aside", "look", count, 0.0, "1", runs)
+        runs = rest["run"].drop_nulls().unique().sort().to_list()
+        yield Finding(
+            "no_malfunction",
+            "parts_set_aside",
+            "look",
+            observed=float(rest.height),
+            limit=0.0,
+            runs=runs,
+        )
 
 
 def _judge_runs(tow: QuayTow) -> Iterator[Finding]:
@@ -311,9 +313,14 @@ def _judge_runs(tow: QuayTow) -> Iterator[Finding]:
         if runs:
             yield Finding(rule, reason, "tow_again", runs=runs)
     for off in find_runs_off_curve(tow.run_points):
-        finding = "run_off_curve" if len(off.runs) == 1 else "runs_disagree"
-        limit = float(np.copysign(MAX_OFF_CURVE_RATIO, off.ratio))
-        yield Finding("plausible", finding, "tow_again", off.ratio, limit, runs=sorted(off.runs))
+        yield Finding(
+            "plausible",
+            "run_off_curve" if len(off.runs) == 1 else "runs_disagree",
+            "tow_again",
+            observed=off.ratio,
+            limit=float(np.copysign(MAX_OFF_CURVE_RATIO, off.ratio)),
+            runs=sorted(off.runs),
+        )
 
 
 def _find_runs_in_other_order(tow: QuayTow) -> list[int]:
@@ -342,7 +349,12 @@ def _judge_runs_not_planned(tow: QuayTow) -> Iterator[Finding]:
         nearest = tow.run_points.filter(distance == distance.min())["target_speed_ratio"].first()
         alike = tow.run_points.filter(pl.col("target_speed_ratio") == nearest)["run"].to_list()
         yield Finding(
-            "no_malfunction", "run_not_planned", "look", ratio, runs=[run], instead_of=alike
+            "no_malfunction",
+            "run_not_planned",
+            "look",
+            observed=ratio,
+            runs=[run],
+            instead_of=alike,
         )
 
 
@@ -373,10 +385,11 @@ def _judge_change(tow: QuayTow) -> Iterator[Finding]:
     _, highest = CHECK["curve_change_unexplained"].limits(tow.tow["crew_class"])
     most = highest or 0.0
     found: tuple[Rule, str, Verdict] | None = None
-    ends = [(row["cw_kg_m"], row["cw_lo_kg_m"], row["cw_hi_kg_m"]) for row in (now, before)]
+    own = (now["cw_kg_m"], now["cw_lo_kg_m"], now["cw_hi_kg_m"])
+    earlier = (before["cw_kg_m"], before["cw_lo_kg_m"], before["cw_hi_kg_m"])
     if abs(change) > most >= abs(unexplained):
         found = "explained_by_size", "change_explained", "good"
-    elif None not in (*ends[0], *ends[1]) and differ_beyond_intervals(*ends):
+    elif None not in own + earlier and differ_beyond_intervals(own, earlier):
         found = "near_earlier_curve", "differs_from_last", "look"
     if found is not None:
         rule, finding, verdict = found

@@ -46,12 +46,11 @@ class Observations(NamedTuple):
     @classmethod
     def concatenate(cls, parts: Sequence[Self]) -> Self:
         """Return the observations of several kinds, which share nothing."""
-        values, variance, shared, shared_variance = zip(*parts, strict=True)
         return cls(
-            np.concatenate(values),
-            np.concatenate(variance),
-            scipy.sparse.block_diag(shared, format="csr"),
-            np.concatenate(shared_variance),
+            values=np.concatenate([part.values for part in parts]),
+            variance=np.concatenate([part.variance for part in parts]),
+            shared=scipy.sparse.block_diag([part.shared for part in parts], format="csr"),
+            shared_variance=np.concatenate([part.shared_variance for part in parts]),
         )
 
 

@@ -11,7 +11,7 @@ The expectation is a Gaussian model with known variances; `mean_shift` says what
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -163,14 +163,13 @@ def plausibility(tows: Tows) -> tuple[Shift, ...]:
         single tows that are only unusual.
     """
     summary = summarize_tows(tows)
-    return (
-        *_find_radians(summary),
-        *_find_turned_vanes(summary),
-        *_judge_force(summary),
-        *_judge_quantity(summary, "wind", summary.wind_ahead, WIND_AHEAD, _GROUPS),
-        *_judge_quantity(summary, "vane", summary.wind_abeam, WIND_ABEAM, _GROUPS),
-        *_judge_quantity(summary, "speed", summary.speed, SPEED, ("tow", "part")),
-    )
+    shifts = list(_find_radians(summary))
+    shifts += _find_turned_vanes(summary)
+    shifts += _judge_force(summary)
+    shifts += _judge_quantity(summary, "wind", summary.wind_ahead, WIND_AHEAD, _GROUPS)
+    shifts += _judge_quantity(summary, "vane", summary.wind_abeam, WIND_ABEAM, _GROUPS)
+    shifts += _judge_quantity(summary, "speed", summary.speed, SPEED, ("tow", "part"))
+    return tuple(shifts)
 
 
 _RADIANS: Final = (_instead_of(say("radians"), say("degrees")),)
@@ -193,10 +192,19 @@ def _find_radians(summary: TowSummary) -> Iterator[Shift]:
         is_own = season == year
         is_odd = is_own & summary.is_in_radians
         if is_odd.sum() >= MIN_TOWS and is_odd.sum() > 0.5 * is_own.sum():
-            yield Shift("season", str(year), "vane", 1.0, 0.0, tuple(tow_id[is_own]), _RADIANS)
+            groups = [("season", str(year), tuple(tow_id[is_own]))]
         else:
-            for name in tow_id[is_odd]:
-                yield Shift("tow", str(name), "vane", 1.0, 0.0, (str(name),), _RADIANS)
+            groups = [("tow", str(name), (str(name),)) for name in tow_id[is_odd]]
+        for kind, key, ids in groups:
+            yield Shift(
+                kind=kind,
+                key=key,
+                quantity="vane",
+                size=1.0,
+                sd=0.0,
+                tows=ids,
+                causes=_RADIANS,
+            )
 
 
 def _find_turned_vanes(summary: TowSummary) -> Iterator[Shift]:
@@ -218,18 +226,37 @@ def _find_turned_vanes(summary: TowSummary) -> Iterator[Shift]:
         if abs(mean) < _MIN_ALIGNMENT or abs(angle) < _MIN_TURN_DEG[kind]:
             continue
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
-        if not turned & {*ids}:
-            turned |= {*ids}
-            yield Shift(kind, key, "vane", round(angle) % 360, 0.0, ids, TURNED)
+        if turned.isdisjoint(ids):
+            turned.update(ids)
+            yield Shift(
+                kind=kind,
+                key=key,
+                quantity="vane",
+                size=round(angle) % 360,
+                sd=0.0,
+                tows=ids,
+                causes=TURNED,
+            )
 
 
 # What may have shifted, and how much it scatters
 
-Group = tuple[str, str, IntArray]
-"""Kind, key, and the places of its tows."""
 
-Candidate = tuple[str, Group, IntArray, FloatArray]
-"""Quantity, group, and what a shift of it does to which observations."""
+class Group(NamedTuple):
+    """Tows that may have shifted together: their kind and key, and their places."""
+
+    kind: str
+    key: str
+    places: IntArray
+
+
+class Candidate(NamedTuple):
+    """A quantity of a group that may have shifted, and its effect on the observations at places."""
+
+    quantity: str
+    group: Group
+    places: IntArray
+    effect: FloatArray
 
 
 def _list_groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
@@ -240,14 +267,16 @@ def _list_groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
         "season": tows["season"].cast(pl.String),
         "archive": pl.repeat("", tows.height, eager=True),
     }
-    whole = [
-        (kind, str(name), places)
-        for kind in kinds
-        if kind in keys
-        for name, places in _split_by_key(keys[kind])
-        if kind == "tow" or len(places) >= MIN_TOWS
-    ]
-    return [*whole, *_list_parts(tows)] if "part" in kinds else whole
+    groups: list[Group] = []
+    for kind in kinds:
+        if kind == "part":
+            groups += _list_parts(tows)
+            continue
+        for name, places in _split_by_key(keys[kind]):
+            group = Group(kind, str(name), places)
+            if kind == "tow" or len(places) >= MIN_TOWS:
+                groups.append(group)
+    return groups
 
 
 def _list_parts(tows: pl.DataFrame) -> Iterator[Group]:
@@ -257,7 +286,7 @@ def _list_parts(tows: pl.DataFrame) -> Iterator[Group]:
         for first in np.unique(day[places])[1:]:
             after = places[day[places] >= first]
             if MIN_TOWS <= len(after) <= len(places) - MIN_TOWS:
-                yield ("part", str(first), after)
+                yield Group("part", str(first), after)
 
 
 def _list_gross_tows(tows: pl.DataFrame, level: FloatArray) -> Iterator[Group]:
@@ -270,7 +299,7 @@ def _list_gross_tows(tows: pl.DataFrame, level: FloatArray) -> Iterator[Group]:
         for side in (-1.0, 1.0):
             some = places[side * off[places] > GROSS]
             if 1 < len(some) < len(places):
-                yield ("some", str(season), some)
+                yield Group("some", str(season), some)
 
 
 def _split_by_key(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
@@ -287,7 +316,7 @@ def _observe(
     state = pl.col("altered").cast(pl.Int32).cum_sum().over(LINE, order_by=["tow_date", "tow_id"])
     keyed = tows.with_columns(archive=pl.lit(0), state=state)
     kinds = (
-        ((*LINE, "state"), spread.boat),
+        (LINE + ("state",), spread.boat),
         (("archive",), spread.archive),
         (("season",), spread.season),
         (("log_alone",), spread.log_alone),
@@ -322,7 +351,10 @@ def _judge_quantity(
     if quantity in _HAS_UNITS:
         ratio = np.maximum(1.0 + values[is_known], 0.01)
         groups += _list_gross_tows(tows, np.log(ratio))
-    candidates = [(quantity, group, group[2], np.ones(len(group[2]))) for group in groups]
+    candidates = []
+    for group in groups:
+        effect = np.ones(len(group.places))
+        candidates.append(Candidate(quantity, group, group.places, effect))
     gusts = np.zeros(tows.height)
     if quantity in ("wind", "vane"):
         gusts = (GUST_SD * summary.true_wind[is_known]) ** 2
@@ -342,16 +374,18 @@ def _judge_force(summary: TowSummary) -> list[Shift]:
     bend = _observe(tows, summary.bend[is_known], BEND, summary.bend_sd[is_known] ** 2)
     # Of the force that the size lets expect: a force in kgf is a tenth of it.
     per_newton = np.exp(ln_level) / summary.force_n[is_known]
+    groups = _list_groups(tows, _GROUPS)
+    groups += _list_gross_tows(tows, ln_level)
     candidates: list[Candidate] = []
-    for group in (*_list_groups(tows, _GROUPS), *_list_gross_tows(tows, ln_level)):
-        own = group[2]
-        candidates.append(("force", group, own, np.ones(len(own))))
-        if group[0] == "archive":  # a shape of hulls looks so; load cells are not off for ever
+    for group in groups:
+        own = group.places
+        candidates.append(Candidate("force", group, own, np.ones(len(own))))
+        if group.kind == "archive":  # a shape of hulls looks so; load cells are not off for ever
             continue
         zero = per_newton[own]
         both = np.concatenate([own, tows.height + own])
         effect = np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])
-        candidates.append(("zero", group, both, effect))
+        candidates.append(Candidate("zero", group, both, effect))
     observations = Observations.concatenate([level, bend])
     return _find_shifts(summary, is_known, observations, candidates)
 
@@ -369,15 +403,17 @@ def _find_shifts(
         observations: of these tows.
         listed: what may have shifted among them.
     """
-    quantities = [quantity for quantity, *_ in listed]
-    places = [places for _, _, places, _ in listed]
-    effects = [effect for _, _, _, effect in listed]
-    ends = np.cumsum([0, *(len(one) for one in places)])
-    columns = (np.concatenate(effects), np.concatenate(places), ends)
+    quantities = [one.quantity for one in listed]
+    lengths = [len(one.places) for one in listed]
+    columns = (
+        np.concatenate([one.effect for one in listed]),
+        np.concatenate([one.places for one in listed]),
+        np.concatenate(([0], np.cumsum(lengths))),
+    )
     shape = (len(observations.values), len(listed))
     candidates = Candidates(
         directions=scipy.sparse.csc_array(columns, shape=shape),
-        is_single=np.array([group[0] == "tow" for _, group, _, _ in listed]),
+        is_single=np.array([one.group.kind == "tow" for one in listed]),
         min_size=np.array([MIN_SIZE[quantity] for quantity in quantities]),
         gross_size=np.array([GROSS if q in _HAS_UNITS else np.inf for q in quantities]),
     )
@@ -387,7 +423,8 @@ def _find_shifts(
     stands_still = summary.wind_stands_still[is_known]
     shifts = []
     for found in find_mean_shifts(observations, candidates, REJECT_AT_SD, flag_at):
-        quantity, (kind, key, own), _, _ = listed[found.place]
+        quantity, group = listed[found.place].quantity, listed[found.place].group
+        own = group.places
         size = found.size
         if quantity == "force":
             size = _convert_to_whole_force(size, air_share[own])
@@ -395,8 +432,17 @@ def _find_shifts(
         causes = _list_likely_causes(quantity, ln_size, found.sd)
         if quantity == "wind" and stands_still[own].any():
             causes = ()  # an anemometer that died on the way is in no other unit
-        ids = tuple(tow_ids.gather(np.sort(own)))
-        shifts.append(Shift(kind, key, quantity, size, found.sd, ids, causes, found.clear))
+        shift = Shift(
+            kind=group.kind,
+            key=group.key,
+            quantity=quantity,
+            size=size,
+            sd=found.sd,
+            tows=tuple(tow_ids.gather(np.sort(own))),
+            causes=causes,
+            clear=found.clear,
+        )
+        shifts.append(shift)
     return shifts
 
 

@@ -44,4 +44,4 @@ def choose_repeated_runs(run_points: pl.DataFrame) -> pl.DataFrame:
         why = pl.when(pl.col(code) > best).then(pl.lit(code)).otherwise(why)
     reason = pl.when(pl.col("place") == 1).then(pl.lit(KEEP)).otherwise(why)
     choice = pl.when(pl.len().over(KIND) > 1).then(reason).alias("choice")
-    return ranked.with_columns(choice).drop(*behind, "place")
+    return ranked.with_columns(choice).drop(list(behind) + ["place"])

@@ -33,11 +33,28 @@ from pipeline.errors import BrokenPromiseError
 AIR_SUMS: Final = ("head_ahead", "head_behind", "front_ahead", "front_behind", "side")
 SUM_NAMES: Final = (
     "force",
-    *(f"log1_{quantity}" for quantity in ("v", "inv_v2", "cw", "cw2", *AIR_SUMS)),
+    "log1_v",
+    "log1_inv_v2",
+    "log1_cw",
+    "log1_cw2",
+    "log1_head_ahead",
+    "log1_head_behind",
+    "log1_front_ahead",
+    "log1_front_behind",
+    "log1_side",
     "log2_v",
-    *AIR_SUMS,
-    *("wind_v", "wind_cos", "wind_sin", "wind_x", "wind_y"),
-    *("gps", "gps_n"),
+    "head_ahead",
+    "head_behind",
+    "front_ahead",
+    "front_behind",
+    "side",
+    "wind_v",
+    "wind_cos",
+    "wind_sin",
+    "wind_x",
+    "wind_y",
+    "gps",
+    "gps_n",
 )
 
 PLACE: Final[dict[str, pl.DataType]] = {

@@ -4,7 +4,7 @@ What the sums are is in `pipeline.blocks.run_blocks`. NumPy adds the samples of 
 order that suits the processor: another one leaves other last bits (docs/decisions.md).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -49,8 +49,8 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: float) -> pl.DataFrame:
         block of a run may hold fewer, one with samples left out any number down to 0) and the
         sums of `SUM_NAMES`, float64. On another processor their last bits may be others.
     """
-    number, second, n = _seconds(samples["run"].to_numpy(), sample_rate_hz)
-    filled = _filled(samples)
+    number, second, n = _divide_into_seconds(samples["run"].to_numpy(), sample_rate_hz)
+    filled = _fill_unmeasured(samples)
     channels = {name: filled[name].to_numpy() for name in _CHANNELS}
     measured = np.logical_and.reduce(
         [np.isfinite(values) for name, values in channels.items() if name != _GPS_NAME]
@@ -59,28 +59,25 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: float) -> pl.DataFrame:
         block = np.repeat(np.arange(len(n)), n)
         n = np.bincount(block[measured], minlength=len(n))
         channels = {name: values[measured] for name, values in channels.items()}
-    sums = np.zeros((len(SUM_NAMES), len(n)))
+    sums = {name: np.zeros(len(n)) for name in SUM_NAMES}
     known, ends = np.flatnonzero(n), np.cumsum(n)
     for start in range(0, len(known), BLOCKS_AT_A_TIME):
         blocks = known[start : start + BLOCKS_AT_A_TIME]
         mine = slice(ends[blocks[0]] - n[blocks[0]], ends[blocks[-1]])
-        of_samples = _quantities(*(values[mine].astype(np.float64) for values in channels.values()))
+        part = {name: values[mine].astype(np.float64) for name, values in channels.items()}
         first = np.cumsum(n[blocks]) - n[blocks]
-        for row, values in enumerate(of_samples):
-            sums[row, blocks] = np.add.reduceat(values, first)
+        for name, terms in _compute_terms(part):
+            sums[name][blocks] = np.add.reduceat(terms, first)
     return pl.DataFrame(
-        {
-            "run": number,
-            "second": second,
-            "n": n,
-            **dict(zip(SUM_NAMES, sums, strict=True)),
-        },
+        {"run": number, "second": second, "n": n} | sums,
         schema={name: kind for name, kind in BLOCK_SCHEMA.items() if name != "tow_id"},
     )
 
 
-def _seconds(run: NDArray[np.int8], rate_hz: float) -> tuple[NDArray[np.int8], IntArray, IntArray]:
-    """Run number, second and number of samples of every block, each of shape (blocks,)."""
+def _divide_into_seconds(
+    run: NDArray[np.int8], rate_hz: float
+) -> tuple[NDArray[np.int8], IntArray, IntArray]:
+    """Return run, second and number of samples of every block, each of shape (blocks,)."""
     first = np.flatnonzero(np.append(True, run[1:] != run[:-1])[: len(run)])
     length = np.diff(np.append(first, len(run)))
     blocks = np.ceil(length / rate_hz).astype(np.int64)
@@ -91,7 +88,7 @@ def _seconds(run: NDArray[np.int8], rate_hz: float) -> tuple[NDArray[np.int8], I
     return run[first][which], second, end - begin
 
 
-def _filled(samples: pl.DataFrame) -> pl.DataFrame:
+def _fill_unmeasured(samples: pl.DataFrame) -> pl.DataFrame:
     """Return the samples with channels that were not measured as the sums take them."""
     filled = samples.with_columns(
         value.cast(pl.Float32).alias(name)
@@ -106,34 +103,45 @@ def _filled(samples: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _quantities(
-    log1: FloatArray,
-    log2: FloatArray,
-    gps: FloatArray,
-    force: FloatArray,
-    wind: FloatArray,
-    angle_deg: FloatArray,
-) -> Iterator[FloatArray]:
-    """Return the terms of every sample that are summed, in the order of `SUM_NAMES`.
+def _compute_terms(channels: Mapping[str, FloatArray]) -> Iterator[tuple[str, FloatArray]]:
+    """Yield the name of each sum with its terms, one for every sample.
 
     The squares that air force is proportional to are signed, in m2/s2: `head` is u|u| with
     u = w cos a, the wind along the course (old rule); `front` and `side` weigh it with |cos a| and
     |sin a| (oblique rule of 2015). Sources: presentation 2015, "Windweerstand" and "Dwarse
     tegenwind".
     """
-    angle = np.radians(angle_deg)
+    force, log1, wind = channels["force_n"], channels["log1_m_s"], channels["wind_speed_m_s"]
+    angle = np.radians(channels["wind_angle_deg"])
     cos, sin = np.cos(angle), np.sin(angle)
     along, front = wind * cos, np.abs(cos)
     head = along * np.abs(along)
     ahead = np.maximum(head, 0.0)
     behind = head - ahead
-    air = ahead, behind, ahead * front, behind * front, head * np.abs(sin)
+    air = {
+        "head_ahead": ahead,
+        "head_behind": behind,
+        "front_ahead": ahead * front,
+        "front_behind": behind * front,
+        "side": head * np.abs(sin),
+    }
     inverse = 1.0 / (log1 * log1)
     cw = force * inverse
-    yield from (force, log1, inverse, cw, cw * cw)
-    yield from (one * inverse for one in air)
-    yield log2
-    yield from air
-    yield from (wind, cos, sin, along, wind * sin)
-    fix = np.isfinite(gps)
-    yield from (np.where(fix, gps, 0.0), fix.astype(np.float64))
+    yield "force", force
+    yield "log1_v", log1
+    yield "log1_inv_v2", inverse
+    yield "log1_cw", cw
+    yield "log1_cw2", cw * cw
+    for name, square in air.items():
+        yield f"log1_{name}", square * inverse
+    yield "log2_v", channels["log2_m_s"]
+    yield from air.items()
+    yield "wind_v", wind
+    yield "wind_cos", cos
+    yield "wind_sin", sin
+    yield "wind_x", along
+    yield "wind_y", wind * sin
+    gps = channels["gps_m_s"]
+    has_fix = np.isfinite(gps)
+    yield "gps", np.where(has_fix, gps, 0.0)
+    yield "gps_n", has_fix.astype(np.float64)

@@ -196,7 +196,8 @@ class BoatModel:
         sd = np.sqrt(self._scale * ((x @ covariance) * x).sum(axis=1))
         half = float(scipy.special.stdtrit(max(self.dof, 1), 1.0 - 0.5 * chance)) * sd
         mean = x @ self.beta
-        return [Interval(*ends) for ends in np.stack([mean, mean - half, mean + half], 1).tolist()]
+        ends = np.stack([mean, mean - half, mean + half], axis=1)
+        return [Interval(value, lo, hi) for value, lo, hi in ends.tolist()]
 
     def leave_boats_out(self) -> Iterator[LeftOut]:
         """Compare the tows of each boat with a model that is fitted to all other boats.

@@ -13,7 +13,7 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.arrays import BoolArray, FloatArray
+from pipeline.arrays import BoolArray, FloatArray, StrArray
 from pipeline.consistency.observed import TOW, is_within_curve
 from pipeline.consistency.types import CW, DIFFERENCES_THAT_MATTER, B, compare_types
 from pipeline.history import SLOW_POWER_W, STEERED_STRAIGHT_FROM
@@ -79,14 +79,15 @@ def place_beside_type(observed: pl.DataFrame) -> pl.DataFrame:
         "cw_standard_lo_kg_m": cw * np.exp(-cw_half),
         "cw_standard_hi_kg_m": cw * np.exp(cw_half),
     }
-    return observed.select(
+    facts = observed.select(
         pl.col(TOW),
         "season",
         "newest",
         "beyond_curve",
-        *(pl.col(name).cast(pl.Float64) for name in FROM_CURVES),
-    ).with_columns(
-        *(pl.Series(name, values, pl.Float64).fill_nan(None) for name, values in numbers.items()),
+        pl.col(FROM_CURVES).cast(pl.Float64),
+    )
+    columns = pl.DataFrame(numbers).fill_nan(None).get_columns()
+    return facts.with_columns(columns).with_columns(
         pl.Series("speed_case", name_speed_cases(tow_hull_ratio), pl.String),
         pl.Series("slow", is_slow(observed), pl.Boolean),
     )
@@ -98,10 +99,10 @@ def is_slow(table: pl.DataFrame) -> BoolArray:
     return table.select((pl.col("power_w") < limit).fill_null(value=False)).to_series().to_numpy()
 
 
-def name_speed_cases(tow_hull_ratio: FloatArray) -> list[str]:
+def name_speed_cases(tow_hull_ratio: FloatArray) -> StrArray:
     """Return which of the three cases of Cw-kromme each tow is, by its speed / hull speed."""
     low, high = MIDDLE_RATIO
-    return ["low" if r < low else "middle" if r < high else "high" for r in tow_hull_ratio]
+    return np.select([tow_hull_ratio < low, tow_hull_ratio < high], ["low", "middle"], "high")
 
 
 def compare_with_races(
@@ -164,7 +165,8 @@ def find_fastest_races(observed: pl.DataFrame, listed_races: pl.DataFrame) -> pl
     speed = mean_speed_m_s(through_water, listed_races["rowing_time_s"])
     races = listed_races.select(pl.col(LINE), "race_date", raced_speed_m_s=pl.Series(speed))
     after = pl.col("race_date") >= pl.col("tow_date")
-    last = pl.col("tow_date") == pl.col("tow_date").max().over("method", *LINE, "race_date")
+    of_race = ("method",) + LINE + ("race_date",)
+    last = pl.col("tow_date") == pl.col("tow_date").max().over(of_race)
     return (
         observed.select("method", "tow_id", "tow_date", pl.col(LINE))
         .join(races, on=LINE, maintain_order="left")
@@ -189,7 +191,7 @@ def mark_outside(
     compared = placed
     for quantity, prefix, unit in ((CW, "cw", "kg_m"), (B, "b", "m_s")):
         own = deviations.filter(quantity=quantity.name).select(
-            *key,
+            pl.col(key),
             pl.col("expected").alias(f"{prefix}_expected_{unit}"),
             pl.col("deviation_sd").alias(f"{prefix}_deviation_sd"),
             pl.col("outside").alias(f"{prefix}_outside"),

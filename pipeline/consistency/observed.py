@@ -20,7 +20,7 @@ from pipeline.quantiles import NORMAL
 from pipeline.tables.keys import LINE, UNKNOWN_TYPE
 
 ALL_TYPES: Final = "all"
-TOW: Final = ("method", "tow_id", *LINE, "boat_type")
+TOW: Final = ("method", "tow_id") + LINE + ("boat_type",)
 """What names a tow, and with it a boat and crew, in the tables of this package."""
 
 MIN_POINTS: Final = 3
@@ -109,21 +109,23 @@ def observe_trusted(
 
 def _join_tows(curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     """Return accepted curves with their tow and boat, by method and date."""
-    of_tow = ("tow_id", "boat_type", "tow_date", "altered", "standard_speed_m_s")
-    sizes = ("weight_kg", "crew_weight_kg", "waterline_length_m", "beam_m")
     known = (
         tows.sort("tow_date", "tow_id")
         .join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left")
         .with_columns(pl.col("boat_type").fill_null(UNKNOWN_TYPE))
         .with_columns(standard_speed_m_s=pl.col("declared_speed_m_s").median().over("boat_type"))
-    )
+        .select(
+            "tow_id", "boat_type", "tow_date", "altered", "standard_speed_m_s",
+            "weight_kg", "crew_weight_kg", "waterline_length_m", "beam_m",
+        )
+    )  # fmt: skip
     dated = pl.struct("tow_date", "tow_id")
     return (
         curves.filter((pl.col("status") != "rejected") & pl.col("cw_kg_m").is_not_null())
-        .join(known.select(*of_tow, *sizes), on="tow_id", maintain_order="left")
+        .join(known, on="tow_id", maintain_order="left")
         .with_columns(
             displacement_kg=pl.col("weight_kg") + pl.col("crew_weight_kg"),
-            newest=dated.rank("ordinal", descending=True).over("method", *LINE) == 1,
+            newest=dated.rank("ordinal", descending=True).over(("method",) + LINE) == 1,
         )
         .sort("method", "tow_date", "tow_id")
     )
@@ -186,10 +188,9 @@ def _compare_at_standard_speed(pooled: pl.DataFrame) -> pl.DataFrame:
         "ln_a_sd": np.sqrt(np.maximum(ln_a_own, 0.0) * run_variance),
         "ln_a_variance": run_variance * ln_a_typical + beside_runs + q_of_tow / (1.0 + type_q) ** 2,
     }
-    return pooled.with_columns(
-        pl.Series("beyond_curve", ~is_within_curve(pooled, standard)),
-        *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
-    )
+    beyond_curve = pl.Series("beyond_curve", ~is_within_curve(pooled, standard))
+    columns = pl.DataFrame(numbers).fill_nan(None).get_columns()
+    return pooled.with_columns(beyond_curve).with_columns(columns)
 
 
 def is_within_curve(observed: pl.DataFrame, speed_m_s: FloatArray) -> BoolArray:

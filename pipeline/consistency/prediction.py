@@ -131,7 +131,7 @@ def _find_independent(candidates: FloatArray, columns: FloatArray) -> FloatArray
     """Return the candidates that the columns and earlier candidates do not explain."""
     chosen: list[int] = []
     for place in range(candidates.shape[1]):
-        with_it = np.column_stack([columns, candidates[:, [*chosen, place]]])
+        with_it = np.column_stack([columns, candidates[:, chosen + [place]]])
         if np.linalg.matrix_rank(with_it) == with_it.shape[1]:
             chosen.append(place)
     return candidates[:, chosen]

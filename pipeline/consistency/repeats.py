@@ -41,7 +41,7 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     Returns:
         Rows of the table `repeat_pairs`.
     """
-    line = ["method", *LINE]
+    line = ("method",) + LINE
     dated = (
         curves.filter((pl.col("status") != "rejected") & pl.col("cw_kg_m").is_not_null())
         .join(tows.select("tow_id", "tow_date", "altered"), on="tow_id", maintain_order="left")
@@ -49,13 +49,10 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
             (0.5 * (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()).alias("half"),
             (pl.col("cw_others_kg_m") / pl.col("cw_kg_m")).log().fill_null(0.0).alias("by_others"),
         )
-        .sort(*line, "tow_date", "tow_id")
+        .sort(line + ("tow_date", "tow_id"))
     )
-    before = [
-        pl.col(name).shift(1).over(line).alias(f"{name}_before")
-        for name in ("tow_id", "season", "cw_kg_m", "declared_speed_m_s", "half", "by_others")
-    ]
-    pairs = dated.with_columns(before).filter(
+    facts = pl.col("tow_id", "season", "cw_kg_m", "declared_speed_m_s", "half", "by_others")
+    pairs = dated.with_columns(facts.shift(1).over(line).name.suffix("_before")).filter(
         pl.col("tow_id_before").is_not_null() & ~pl.col("altered")
     )
     width = (pl.col("half") ** 2 + pl.col("half_before") ** 2).sqrt()
@@ -100,9 +97,9 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.Da
     Returns:
         Rows of the table `reproducibility`, one per method and scope, also where it has no pairs.
     """
-    eras = [(era.name, era.first, era.last) for era in ERAS]
-    every = (ALL_PAIRS, -9999, 9999)
-    scopes = pl.DataFrame([every, *eras], ["scope", "first", "last"], orient="row")
+    bounds = [(ALL_PAIRS, -9999, 9999)]
+    bounds += [(era.name, era.first, era.last) for era in ERAS]
+    scopes = pl.DataFrame(bounds, ["scope", "first", "last"], orient="row")
     key, difference, n = ["method", "scope"], pl.col("ln_ratio"), pl.len()
 
     def select_scopes(rows: pl.DataFrame, season: str) -> GroupBy:
@@ -126,15 +123,14 @@ def reproducibility(repeat_pairs: pl.DataFrame, observed: pl.DataFrame) -> pl.Da
     n_pairs = found["n_pairs"].cast(pl.Float64).to_numpy()
     chained = found["chained"].cast(pl.Float64).to_numpy()
     dof = n_pairs / (1.0 + chained / (2.0 * n_pairs))
-    ends = {"lo": 0.5 - LEVEL / 2, "hi": 0.5 + LEVEL / 2}
-    wider = {
-        name: pl.Series(np.sqrt(dof / scipy.special.chdtri(dof, end))) for name, end in ends.items()
-    }
+    lowest = pl.Series(np.sqrt(dof / scipy.special.chdtri(dof, 0.5 - LEVEL / 2)))
+    highest = pl.Series(np.sqrt(dof / scipy.special.chdtri(dof, 0.5 + LEVEL / 2)))
     return found.select(
-        *key,
+        pl.col(key),
         pl.col("n_pairs", "n_tows").fill_null(0).cast(pl.Int32),
         "sd_ratio",
-        *((pl.col("sd_ratio") * ratio).alias(name) for name, ratio in wider.items()),
+        (pl.col("sd_ratio") * lowest).alias("lo"),
+        (pl.col("sd_ratio") * highest).alias("hi"),
         cs.starts_with("share_within"),
         "within_sd_ratio",
     )

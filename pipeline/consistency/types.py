@@ -411,8 +411,8 @@ def describe_slopes(fitted: TypeModel) -> Row:
             row[f"{name}_verdict"] = design.reasons[term]
             continue
         (in_y,) = fitted.slope_model.predict(fitted.unit_row(term))
-        ends = sorted(fitted.ratio_per_y * end for end in (in_y.lo, in_y.hi))
-        slope = Interval(fitted.ratio_per_y * in_y.value, *ends)
+        lo, hi = sorted([fitted.ratio_per_y * in_y.lo, fitted.ratio_per_y * in_y.hi])
+        slope = Interval(fitted.ratio_per_y * in_y.value, lo, hi)
         apart = SDS_LIGHT_TO_HEAVY * design.sd[term] / TERMS[term]
         row |= {
             f"{name}_slope": slope.value,
@@ -449,8 +449,8 @@ def compare_classes(fitted: TypeModel) -> Row:
     classes = fitted.design.classes
     contrast = classes[women].mean(axis=0) - classes[~women].mean(axis=0)
     (in_y,) = fitted.model.predict(contrast[None, :])
-    ends = sorted(fitted.ratio_per_y * end for end in (in_y.lo, in_y.hi))
-    women_ratio, lo, hi = np.exp([fitted.ratio_per_y * in_y.value, *ends]).tolist()
+    ln_lo, ln_hi = sorted([fitted.ratio_per_y * in_y.lo, fitted.ratio_per_y * in_y.hi])
+    women_ratio, lo, hi = np.exp([fitted.ratio_per_y * in_y.value, ln_lo, ln_hi]).tolist()
     return counts | {"women_ratio": women_ratio, "women_ratio_lo": lo, "women_ratio_hi": hi}
 
 

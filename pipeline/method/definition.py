@@ -103,9 +103,11 @@ class Method(Declared):
     @property
     def definition(self) -> str:
         """Everything that can change a curve, as canonical JSON; the register's rule cannot."""
-        blocks = [r.model_dump(mode="json") for r in self.ranges]
-        for block in blocks:
-            block["steps"] = _add_former_options(block["steps"])
+        blocks = []
+        for block in self.ranges:
+            dumped = block.model_dump(mode="json")
+            dumped["steps"] = _add_former_options(dumped["steps"])
+            blocks.append(dumped)
         return json.dumps(blocks, sort_keys=True, separators=(",", ":"))
 
     @property
@@ -119,8 +121,12 @@ def _add_former_options(steps: dict[str, Any]) -> dict[str, Any]:
 
     Editions name their methods by the hash of both, which must not change with what is an option.
     """
-    complete = {step: options | FORMER_OPTIONS.get(step, {}) for step, options in steps.items()}
-    return {step: options for step, options in complete.items() if options}
+    complete = {}
+    for step, options in steps.items():
+        with_former = options | FORMER_OPTIONS.get(step, {})
+        if with_former:
+            complete[step] = with_former
+    return complete
 
 
 def join_equal_ranges(ranges: Iterable[SeasonSteps]) -> tuple[SeasonSteps, ...]:

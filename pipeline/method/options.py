@@ -254,4 +254,5 @@ def find_basis(step: str, option: str, value: object) -> Basis:
     """Return where an option comes from, given the value it is set to."""
     options: Any = Steps.model_fields[step].annotation
     declared = options.model_fields[option].json_schema_extra
-    return Basis(*declared["but"].get(value, (declared["status"], declared["source"])))
+    status, source = declared["but"].get(value, (declared["status"], declared["source"]))
+    return Basis(status, source)

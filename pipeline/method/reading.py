@@ -138,7 +138,7 @@ def parse_method(
         description_en=head.description_en or head.description,
         extends=head.extends,
         ranges=_build_ranges(file, layers),
-        validity=_read_register_rule([*ancestors, file]),
+        validity=_read_register_rule(ancestors + [file]),
         published_in=published_in,
     )
 
@@ -249,7 +249,7 @@ def _read_ancestors(file: _MethodFile, text_of: Callable[[str], str]) -> list[_M
     child = file
     while (parent := child.head.extends) is not None:
         if parent in names:
-            circle = " > ".join((*names, parent))
+            circle = " > ".join(names + [parent])
             problem = say(
                 "a method cannot build on itself: {}; change its name or this one", circle
             )
@@ -278,7 +278,7 @@ def _read_layers(file: _MethodFile, leave_out_unknown: bool) -> list[_Layer]:
         given = {key: value for key, value in block.items() if key not in ("range", "why")}
         overrides.append(_Layer(first, last, _read_step_options(file, given, "overrides")))
     _refuse_overlap(file, overrides)
-    layers = [_Layer(0, LAST_SEASON, steps), *overrides]
+    layers = [_Layer(0, LAST_SEASON, steps)] + overrides
     if leave_out_unknown:
         layers = [layer._replace(options=_leave_out_unknown(layer.options)) for layer in layers]
     return layers
@@ -328,7 +328,7 @@ def _build_ranges(file: _MethodFile, layers: list[_Layer]) -> tuple[SeasonSteps,
     begins = {first}
     for layer in layers:
         begins |= {edge for edge in (layer.first, layer.last + 1) if first < edge <= last}
-    edges = [*sorted(begins), last + 1]
+    edges = sorted(begins) + [last + 1]
     ranges = []
     for begin, end in itertools.pairwise(edges):
         steps = _merge_steps(file, layers, begin)

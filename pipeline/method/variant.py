@@ -4,7 +4,8 @@ Here options of some seasons are replaced, the differences from the method it ex
 and a file is written that names only those. Reading a file is in `pipeline.method.definition`.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+import itertools
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from pipeline.method.definition import Method, SeasonSteps, join_equal_ranges
@@ -47,13 +48,14 @@ class Difference:
 def cut_at(method: Method, seasons: Iterable[int]) -> tuple[SeasonSteps, ...]:
     """Return the ranges of a method, cut before each of the given seasons that it covers."""
     whole_first, whole_last = method.ranges[0].first, method.ranges[-1].last
-    cuts = {block.first for block in method.ranges}
-    firsts = sorted(cuts | {s for s in seasons if whole_first < s <= whole_last})
-    lasts = [*(first - 1 for first in firsts[1:]), whole_last]
-    return tuple(
-        SeasonSteps(first=first, last=last, steps=method.get_steps(first))
-        for first, last in zip(firsts, lasts, strict=True)
-    )
+    firsts = {block.first for block in method.ranges}
+    firsts.update(season for season in seasons if whole_first < season <= whole_last)
+    edges = sorted(firsts) + [whole_last + 1]
+    pieces = []
+    for first, after in itertools.pairwise(edges):
+        piece = SeasonSteps(first=first, last=after - 1, steps=method.get_steps(first))
+        pieces.append(piece)
+    return tuple(pieces)
 
 
 def variant(
@@ -70,7 +72,8 @@ def variant(
         MethodFileError: the ranges leave out a season of `base`, or have one twice.
     """
     seasons = [(block.first, block.last) for block in ranges]
-    if seasons != [(block.first, block.last) for block in cut_at(base, (s[0] for s in seasons))]:
+    cut = cut_at(base, [block.first for block in ranges])
+    if seasons != [(block.first, block.last) for block in cut]:
         raise MethodFileError("{}: the seasons {} are not those of {}", name, seasons, base.name)
     ships = base.name in list_shipped_methods() and base == read_shipped_method(base.name)
     return Method(
@@ -91,16 +94,39 @@ def differences(method: Method, parent: Method) -> list[Difference]:
     Returns:
         By step and option in the order of `Steps`, then by season.
     """
-    pieces = cut_at(method, (block.first for block in parent.ranges))
     changed: list[Difference] = []
-    for step, option in _options():
-        for block in pieces:
-            old = getattr(getattr(parent.get_steps(block.first), step), option)
-            new = getattr(getattr(block.steps, step), option)
-            if old != new:
-                one = Difference(step, option, block.first, block.last, (old,), new)
-                changed[-1:] = _together(changed[-1:], one)
+    pieces = cut_at(method, [block.first for block in parent.ranges])
+    for step in Steps.model_fields:
+        for option in type(getattr(pieces[0].steps, step)).model_fields:
+            changed += _list_differences(step, option, pieces, parent)
     return changed
+
+
+def _list_differences(
+    step: str, option: str, pieces: Sequence[SeasonSteps], parent: Method
+) -> list[Difference]:
+    """Return where an option differs from the parent's; equal ones of adjoining seasons as one."""
+    found: list[Difference] = []
+    for block in pieces:
+        old = getattr(getattr(parent.get_steps(block.first), step), option)
+        new = getattr(getattr(block.steps, step), option)
+        if old == new:
+            continue
+        last = found[-1] if found else None
+        if last is not None and (last.last + 1, last.after) == (block.first, new):
+            before = last.before if old in last.before else last.before + (old,)
+            found[-1] = replace(last, last=block.last, before=before)
+        else:
+            one = Difference(
+                step=step,
+                option=option,
+                first=block.first,
+                last=block.last,
+                before=(old,),
+                after=new,
+            )
+            found.append(one)
+    return found
 
 
 def write_variant_text(method: Method) -> str:
@@ -129,30 +155,12 @@ def write_variant_text(method: Method) -> str:
         steps = changed.setdefault(range_text(one.first, one.last), {})
         steps.setdefault(one.step, {})[one.option] = one.after
     everywhere = changed.pop(covered(method), {})
-    blocks = [_register_lines(method, parent)]
-    blocks.append(["[steps]", *step_lines(everywhere)] if everywhere else [])
-    blocks += [write_override_lines(seasons, steps) for seasons, steps in changed.items()]
-    return "\n\n".join("\n".join(block) for block in [head, *blocks] if block) + "\n"
-
-
-def _register_lines(method: Method, parent: Method) -> list[str]:
     inherited = parent.validity.model_dump()
-    own = {k: v for k, v in method.validity.model_dump().items() if v != inherited[k]}
-    return ["[register]", *key_lines(own)] if own else []
-
-
-def _options() -> Iterator[tuple[str, str]]:
-    for step, field in Steps.model_fields.items():
-        options = field.annotation
-        assert options is not None  # noqa: S101 - every step of `Steps` is a model
-        yield from ((step, option) for option in options.model_fields)
-
-
-def _together(last: list[Difference], one: Difference) -> list[Difference]:
-    """Join a difference to the one before it, where it goes on in the next season."""
-    for block in last:
-        here = (block.step, block.option, block.last + 1, block.after)
-        if here == (one.step, one.option, one.first, one.after):
-            before = block.before + tuple(v for v in one.before if v not in block.before)
-            return [replace(block, last=one.last, before=before)]
-    return [*last, one]
+    rule = {k: v for k, v in method.validity.model_dump().items() if v != inherited[k]}
+    blocks = [head]
+    if rule:
+        blocks.append(["[register]"] + key_lines(rule))
+    if everywhere:
+        blocks.append(["[steps]"] + step_lines(everywhere))
+    blocks += [write_override_lines(seasons, steps) for seasons, steps in changed.items()]
+    return "\n\n".join("\n".join(block) for block in blocks) + "\n"

@@ -20,17 +20,14 @@ def write_method_text(method: Method) -> str:
         "seasons": covered(method),
     }
     if method.published_in is not None:
-        head["published_in"] = range_text(*method.published_in)
-    lines = [
-        *key_lines(head),
-        "",
-        "[register]",
-        *key_lines(method.validity.model_dump(exclude_none=True)),
-    ]
+        first, last = method.published_in
+        head["published_in"] = range_text(first, last)
+    rule = key_lines(method.validity.model_dump(exclude_none=True))
+    blocks = [key_lines(head), ["[register]"] + rule]
     for block in method.ranges:
         steps = block.steps.model_dump(mode="json", exclude_none=True)
-        lines += ["", *write_override_lines(range_text(block.first, block.last), steps)]
-    return "\n".join(lines) + "\n"
+        blocks.append(write_override_lines(range_text(block.first, block.last), steps))
+    return "\n\n".join("\n".join(block) for block in blocks) + "\n"
 
 
 BEGINNING = """
@@ -53,17 +50,17 @@ def write_new_method_text(name: str, base: Method) -> str:
         "extends": base.name,
         "seasons": covered(base),
     }
-    listed = [f"# What {base.name} says:"]
+    lines = key_lines(head) + [BEGINNING, f"# What {base.name} says:"]
     for block in base.ranges:
+        lines += ["#", f"# Seasons {range_text(block.first, block.last)}"]
         steps = step_lines(block.steps.model_dump(mode="json", exclude_none=True))
-        seasons = f"Seasons {range_text(block.first, block.last)}"
-        listed += ["#", *(f"# {line}" for line in (seasons, *steps))]
-    return "\n".join([*key_lines(head), BEGINNING, *listed]) + "\n"
+        lines += [f"# {line}" for line in steps]
+    return "\n".join(lines) + "\n"
 
 
 def write_override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]]) -> list[str]:
     """Return the lines of an `[[overrides]]` block."""
-    return ["[[overrides]]", *key_lines({"range": range_of}), *step_lines(steps)]
+    return ["[[overrides]]"] + key_lines({"range": range_of}) + step_lines(steps)
 
 
 def step_lines(steps: Mapping[str, Mapping[str, object]]) -> list[str]:

@@ -184,6 +184,6 @@ def diagnose_anemometers(c: Computed) -> pl.DataFrame:
             shown_by=pl.lit(None),
             confused_with=pl.lit(None),
         )
-        .select(*DIAGNOSIS_SCHEMA)
+        .select(DIAGNOSIS_SCHEMA.keys())
         .cast(pl.Schema(DIAGNOSIS_SCHEMA))
     )

@@ -13,10 +13,6 @@ from pipeline.curve import LEAST_MARGIN
 from pipeline.quantiles import NORMAL
 from pipeline.season_log import SeasonFactors
 
-BEST: Final = ("cw_best_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m")
-MEASURED: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-OTHERS: Final = "cw_others_kg_m"
-
 SHARED_BY_REPEATS: Final = ("force", "wind", "anemometer", "mass", "temperature")
 """Components of the budget that repeat tows share."""
 
@@ -30,11 +26,12 @@ def add_best_estimates(
     budget: pl.DataFrame,
     inputs: pl.DataFrame,
 ) -> pl.DataFrame:
-    """Add `BEST`, Cw at the declared speed by all tows with its 95 % interval, and `OTHERS`.
+    """Add the best estimate of Cw at the declared speed with its 95 % interval, and `cw_others`.
 
-    `OTHERS` is Cw as measured, with the instruments as all other boats show them. A tow of a season
-    that is not determined stays as measured: only the bend of its curves would say what its log
-    was, and no hull is an exact hyperbola.
+    `cw_best_kg_m`, `cw_best_lo_kg_m` and `cw_best_hi_kg_m` are by all tows; `cw_others_kg_m` is Cw
+    as measured, with the instruments as all other boats show them. A tow of a season that is not
+    determined stays as measured: only the bend of its curves would say what its log was, and no
+    hull is an exact hyperbola.
 
     Args:
         curves: rows of the table.
@@ -43,7 +40,13 @@ def add_best_estimates(
         inputs: of each tow there (`budget.make_budget_inputs`).
     """
     if factors is None:
-        return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
+        nothing = pl.lit(None, pl.Float64)
+        return curves.with_columns(
+            cw_best_kg_m=nothing,
+            cw_best_lo_kg_m=nothing,
+            cw_best_hi_kg_m=nothing,
+            cw_others_kg_m=nothing,
+        )
     shared = (
         budget.filter(pl.col("component").is_in(SHARED_BY_REPEATS))
         .group_by("tow_id", maintain_order=True)
@@ -62,11 +65,11 @@ def add_best_estimates(
     below = ((col("best_ln_cw") - col("best_lo")) ** 2 + added).sqrt()
     above = ((col("best_hi") - col("best_ln_cw")) ** 2 + added).sqrt()
     return joined.select(
-        *curves.columns,
-        pl.coalesce(best, MEASURED[0]).alias(BEST[0]),
-        pl.coalesce(best * (-below).exp(), MEASURED[1]).alias(BEST[1]),
-        pl.coalesce(best * above.exp(), MEASURED[2]).alias(BEST[2]),
-        (col("cw_kg_m") * col("others_ln_ratio").fill_null(0.0).exp()).alias(OTHERS),
+        pl.col(curves.columns),
+        cw_best_kg_m=pl.coalesce(best, "cw_kg_m"),
+        cw_best_lo_kg_m=pl.coalesce(best * (-below).exp(), "cw_lo_kg_m"),
+        cw_best_hi_kg_m=pl.coalesce(best * above.exp(), "cw_hi_kg_m"),
+        cw_others_kg_m=col("cw_kg_m") * col("others_ln_ratio").fill_null(0.0).exp(),
     )
 
 
@@ -83,10 +86,13 @@ def _move_to_declared_speed(tows: pl.DataFrame) -> pl.DataFrame:
     away = pl.col("reference_ratio") ** 2 - 1.0
     own = (1.0 - own_bend * away).clip(lower_bound=LEAST_MARGIN)
     boat = (1.0 - pl.col("bend") * away).clip(lower_bound=LEAST_MARGIN)
-    estimated = ("others_ln_ratio", "measured_ln_cw", "best_ln_cw", "best_lo", "best_hi")
     return tows.select(
         "tow_id",
-        *estimated,
+        "others_ln_ratio",
+        "measured_ln_cw",
+        "best_ln_cw",
+        "best_lo",
+        "best_hi",
         ln_by_bend=own.log() - boat.log(),
         bend_variance=(BEND_SD * away / boat) ** 2,
     )

@@ -212,7 +212,7 @@ def _estimate_boat_misfit(c: Computed, speed_ratios: FloatArray) -> tuple[FloatA
         speed_ratios,
         c.plan.which,
     )
-    line = tows.frame.select(pl.struct(*LINE).rank("dense") - 1).to_series()
+    line = tows.frame.select(pl.struct(LINE).rank("dense") - 1).to_series()
     return shrink_to_lines(by_tow, line.to_numpy().astype(np.int64))
 
 

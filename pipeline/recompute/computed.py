@@ -85,7 +85,7 @@ class Computed:
         windows: of every run, by name as `Windows.columns_of_runs` has them, shape (runs,).
         means: of every run over its window, in log speed.
         instruments: what was estimated of each tow's instruments, a row per tow, as
-            `season_factors.instruments_of` gives it; null where nothing was.
+            `season_factors.get_instruments` gives it; null where nothing was.
         speed: correction of the log.
         temperature: correction to the reference temperature.
         air: correction for wind.

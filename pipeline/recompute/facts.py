@@ -36,10 +36,14 @@ def add_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
     from the median of its day; 0 where it has none.
     """
     water, day = pl.col("water_temperature_c"), pl.col("tow_date")
-    alike = ([day], [day.dt.year(), day.dt.month()], [day.dt.month()])
-    means = [water.mean().over(group) for group in alike]
+    mean = water.mean()
     return tows.with_columns(
-        expected_water_c=pl.coalesce(*means, water.mean()),
+        expected_water_c=pl.coalesce(
+            mean.over(day),
+            mean.over(day.dt.year(), day.dt.month()),
+            mean.over(day.dt.month()),
+            mean,
+        ),
         water_off_c=(water - water.median().over(day)).abs().fill_null(0.0),
     )
 
@@ -62,27 +66,28 @@ def add_expected_mass(tows: pl.DataFrame) -> pl.DataFrame:
     """
     boat_groups = ["fsn_no"], ["boat_type", "rowers"], ["rowers"]
     crew_groups = ["fsn_no", "rowers"], ["rowers", "crew_class"], ["rowers"]
-    boat_kg, boat_ln_sd = _expected_from_like_tows("weight_kg", boat_groups)
-    crew_kg, crew_ln_sd = _expected_from_like_tows("crew_weight_kg", crew_groups)
+    boat_kg, boat_ln_sd = _expect_from_like_tows("weight_kg", boat_groups)
+    crew_kg, crew_ln_sd = _expect_from_like_tows("crew_weight_kg", crew_groups)
     mass_kg = boat_kg + crew_kg
     mass_sd_kg = ((boat_kg * boat_ln_sd) ** 2 + (crew_kg * crew_ln_sd) ** 2).sqrt()
     return tows.with_columns(mass_kg=mass_kg, mass_ln_sd=mass_sd_kg / mass_kg)
 
 
-def _expected_from_like_tows(column: str, groups: Iterable[list[str]]) -> tuple[pl.Expr, pl.Expr]:
+def _expect_from_like_tows(column: str, groups: Iterable[list[str]]) -> tuple[pl.Expr, pl.Expr]:
     """Return a weight, by the first group of tows that has one, and its ln standard deviation."""
     recorded = pl.col(column)
     per_rower = recorded / pl.col("rowers")
     medians = [recorded.median().over(group) for group in groups]
     spreads = [recorded.log().std().over(group) for group in groups]
-    expected = pl.coalesce(recorded, *medians, per_rower.median() * pl.col("rowers"))
-    ln_sd = pl.coalesce(*spreads, per_rower.log().std(), UNKNOWN_WEIGHT_LN_SD)
+    by_archive = per_rower.median() * pl.col("rowers")
+    expected = pl.coalesce([recorded] + medians + [by_archive])
+    ln_sd = pl.coalesce(spreads + [per_rower.log().std(), pl.lit(UNKNOWN_WEIGHT_LN_SD)])
     return expected, pl.when(recorded.is_null()).then(ln_sd).otherwise(0.0)
 
 
 def add_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tow_runs` with the windows that were given by hand (`hand_windows`)."""
-    given = windows.select("tow_id", "run", *HAND_COLUMNS).rename(HAND_COLUMNS)
+    given = windows.select("tow_id", "run", pl.col(list(HAND_COLUMNS))).rename(HAND_COLUMNS)
     return runs.join(given, on=["tow_id", "run"], how="left", maintain_order="left")
 
 

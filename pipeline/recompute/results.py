@@ -6,7 +6,6 @@ person should look at, in `pipeline.assessment.assess`.
 """
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 import polars as pl
@@ -15,6 +14,7 @@ from numpy.typing import ArrayLike
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.assessment.assess import add_status, assess
+from pipeline.assessment.currents import estimate_currents
 from pipeline.assessment.repeated_runs import choose_repeated_runs
 from pipeline.method.definition import Method
 from pipeline.method.options import Steps
@@ -42,13 +42,6 @@ from pipeline.tables.season_log import (
 )
 from pipeline.uncertainty.propagation import combine, make_budget
 
-OF_ALL_TOWS: Final = {
-    "season_links": SeasonLinks,
-    "tow_instruments": TowInstruments,
-    "best_estimate_weights": BestEstimateWeights,
-}
-"""Tables of what all tows together tell, by name."""
-
 
 @dataclass(frozen=True)
 class Recomputed:
@@ -64,6 +57,7 @@ class Recomputed:
     assessments: pl.DataFrame
     uncertainty_budget: pl.DataFrame
     curve_points: pl.DataFrame
+    tow_currents: pl.DataFrame
     season_links: pl.DataFrame
     season_diagnosis: pl.DataFrame
     tow_instruments: pl.DataFrame
@@ -93,13 +87,14 @@ def build_tables(
     at_v0 = make_budget(declared_inputs, assumed)
     curves = named(_make_curves(c, bounds.filter(speed_ratio=DECLARED), pooled))
     curves = add_best_estimates(curves, estimated, at_v0, declared_inputs)
-    diagnosis = _join_diagnoses(estimated, c)
-    assessments = assess(curves, run_points, c.tows.frame, diagnosis)
-    rejecting = [
-        (season, check)
-        for season in c.tows.frame["season"].unique().sort()
-        for check in method.get_steps(season).assessment.reject
-    ]
+    of_logs = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
+    diagnosis = pl.concat([of_logs, diagnose_anemometers(c)]).sort("season", "part", "instrument")
+    currents = estimate_currents(curves, run_points)
+    assessments = assess(curves, run_points, c.tows.frame, diagnosis, currents)
+    links, instruments, weights = _make_tables_of_all_tows(estimated)
+    rejecting: list[tuple[int, str]] = []
+    for season in c.tows.frame["season"].unique().sort():
+        rejecting += [(season, check) for check in method.get_steps(season).assessment.reject]
     return Recomputed(
         run_points=run_points,
         curves=add_status(curves, assessments, rejecting),
@@ -111,8 +106,11 @@ def build_tables(
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
         curve_points=named(_make_curve_points(inputs, bounds)) if with_bands else pl.DataFrame(),
+        tow_currents=currents,
         season_diagnosis=named(diagnosis),
-        **{table: named(rows) for table, rows in _make_tables_of_all_tows(estimated).items()},
+        season_links=named(links),
+        tow_instruments=named(instruments),
+        best_estimate_weights=named(weights),
         factors=estimated,
     )
 
@@ -123,9 +121,9 @@ def _make_run_points(c: Computed) -> pl.DataFrame:
     on_curve = curve.cw(c.curves.a_kg_m[tow], c.curves.s_s2_m2[tow], c.speed_m_s)
     log1 = np.where(has_window, means.speed_m_s, 1.0)
     has_limits = c.plan.run_options.run.is_trimmed
-    wind, log2 = (c.tows.measured(channel)[tow] for channel in ("wind", "log2"))
+    has_wind, has_log2 = c.tows.measured("wind")[tow], c.tows.measured("log2")[tow]
     log2_ratio = means.log2_m_s / log1
-    log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
+    has_log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
     numbers = {
         "window_start_s": windows["start_s"],
         "window_end_s": windows["end_s"],
@@ -141,22 +139,20 @@ def _make_run_points(c: Computed) -> pl.DataFrame:
         "cw_kg_m": c.cw_kg_m,
         "cw_sd": c.refer_to_true_speed(means.sd_kg_m),
         "cw_seconds_sd_kg_m": c.refer_to_true_speed(means.seconds_sd_kg_m),
-        "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
-        "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
-        "log2_ratio": np.where(log2, log2_ratio, np.nan),
+        "wind_m_s": np.where(has_wind, means.wind_m_s, np.nan),
+        "wind_angle_deg": np.where(has_wind, means.wind_angle_deg, np.nan),
+        "log2_ratio": np.where(has_log2, log2_ratio, np.nan),
+        "ends_ratio": np.where(has_limits, windows["ends_ratio"], np.nan),
+        "gps_ratio": means.gps_m_s / log1,
+        "fitted_cw_kg_m": np.where(c.curves.converged[tow], on_curve, np.nan),
     }
-    return c.tows.blocks.runs.select(
-        "tow_id", "run", "direction", "target_speed_ratio"
-    ).with_columns(
+    runs = c.tows.blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio")
+    return runs.with_columns(
         pl.Series("lost_s", c.tows.lost_s),
-        *(_make_column(name, values, has_window) for name, values in numbers.items()),
-        _make_column("ends_ratio", windows["ends_ratio"], has_window & has_limits),
-        _make_column("gps_ratio", means.gps_m_s / log1, has_window),
-        _make_column("fitted_cw_kg_m", on_curve, has_window & c.curves.converged[tow]),
         pl.Series("cut_reason", windows["cut_reason"], pl.String),
         pl.Series("used", c.used),
         pl.Series("reason", c.reasons, pl.String),
-    )
+    ).with_columns(_make_column(name, values, has_window) for name, values in numbers.items())
 
 
 def _make_curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
@@ -165,7 +161,8 @@ def _make_curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFram
     cw = c.cw_at_declared
     sound = np.isfinite(cw)
     mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
-    lo, hi = (mine[name].fill_null(np.nan).to_numpy() for name in ("lo_ratio", "hi_ratio"))
+    lo = mine["lo_ratio"].fill_null(np.nan).to_numpy()
+    hi = mine["hi_ratio"].fill_null(np.nan).to_numpy()
     b_interval = curve.b_interval(c.points, c.free, estimate_scatter(c, pooled))
     safe_cw = np.where(sound, cw, 1.0)
     residual = np.sqrt(c.curves.rss_kg2_m2 / np.maximum(c.curves.n_points - 2, 1)) / safe_cw
@@ -180,12 +177,12 @@ def _make_curves(c: Computed, bounds: pl.DataFrame, pooled: bool) -> pl.DataFram
         "b_hi_m_s": np.where(own_b, b_interval.hi, np.nan),
         "power_w": power_per_rower_w(safe_cw, declared, c.tows.get_of_tows("rowers")),
         "residual_sd_ratio": residual,
+        "b_m_s": np.where(c.curves.b_determined, c.curves.b_m_s, np.nan),
     }
-    return tows.select(
-        "tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s"
+    facts = tows.select("tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s")
+    return facts.with_columns(
+        _make_column(name, values, sound) for name, values in numbers.items()
     ).with_columns(
-        *(_make_column(name, values, sound) for name, values in numbers.items()),
-        _make_column("b_m_s", c.curves.b_m_s, sound & c.curves.b_determined),
         _make_column("calibration_factor", c.calibration_factor, c.options.speed.is_calibrated),
         pl.Series("b_capped", c.curves.b_capped),
         pl.Series("runs_used", c.tows.count(c.used), pl.Int8),
@@ -213,15 +210,16 @@ def _make_log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFr
         c.speed.is_calibrated, np.log(c.speed.log_factor * c.calibration_factor), np.nan
     )
     season, which = c.tows.get_of_tows("season"), c.plan.which
-    rows: list[tuple[int, *Factor]] = []
+    rows = []
     for year in c.tows.frame["season"].unique().sort():
         first = which[season == year].min()
         if c.plan.steps[first].calibration.rule == "none":
             found = _find_season_factor(c.plan.steps[first], year, estimated)
         else:
             found = _average_factor(ln_factor[(season == year) & (which == first)])
-        rows.append((year, *found))
-    return pl.DataFrame(rows, schema=dtypes(LogFactors, without=["method"]), orient="row")
+        factor, lo, hi, source = found
+        rows.append({"season": year, "factor": factor, "lo": lo, "hi": hi, "source": source})
+    return pl.DataFrame(rows, dtypes(LogFactors, without=["method"]))
 
 
 Factor = tuple[float, float | None, float | None, str]
@@ -252,24 +250,27 @@ def _average_factor(ln_factor: FloatArray) -> Factor:
     return factor, lo, hi, "gps"
 
 
-def _make_tables_of_all_tows(estimated: SeasonFactors | None) -> dict[str, pl.DataFrame]:
-    """Return the tables of `OF_ALL_TOWS`; without rows where nothing was estimated."""
-    schemas = {name: dtypes(table, without=["method"]) for name, table in OF_ALL_TOWS.items()}
+def _make_tables_of_all_tows(
+    estimated: SeasonFactors | None,
+) -> tuple[pl.DataFrame, pl.DataFrame, pl.DataFrame]:
+    """Return season links, instruments of tows and weights of best estimates.
+
+    They are without rows where nothing was estimated.
+    """
+    links = pl.Schema(dtypes(SeasonLinks, without=["method"]))
+    instruments = pl.Schema(dtypes(TowInstruments, without=["method"]))
+    weights = pl.Schema(dtypes(BestEstimateWeights, without=["method"]))
     if estimated is None:
-        return {name: pl.DataFrame(schema=schema) for name, schema in schemas.items()}
-    of_links = schemas["season_links"]
-    return {
-        "season_links": estimated.factors.select(*of_links).cast(pl.Schema(of_links)),
-        "tow_instruments": estimated.tows.select(*schemas["tow_instruments"]).sort("tow_id"),
-        "best_estimate_weights": estimated.weights,
-    }
-
-
-def _join_diagnoses(estimated: SeasonFactors | None, c: Computed) -> pl.DataFrame:
-    """Return what is wrong with the instruments of each season; no rows without an estimate."""
-    joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
-    both = pl.concat([joint, diagnose_anemometers(c)])
-    return both.sort("season", "part", "instrument")
+        return (
+            pl.DataFrame(schema=links),
+            pl.DataFrame(schema=instruments),
+            pl.DataFrame(schema=weights),
+        )
+    return (
+        estimated.factors.select(links.keys()).cast(links),
+        estimated.tows.select(instruments.keys()).sort("tow_id"),
+        estimated.weights,
+    )
 
 
 def _make_column(name: str, values: ArrayLike, known: BoolArray | bool) -> pl.Series:

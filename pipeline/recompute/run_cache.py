@@ -30,7 +30,7 @@ class RunCache:
             find = steady_windows if is_trimmed else take_whole_runs
             self._windows[key] = find(tows.blocks)
         windows = self._windows[key]
-        averaged = (*key, averaging_s, is_robust)
+        averaged = key + (averaging_s, is_robust)
         if averaged not in self._means:
             means = window_means(tows.blocks, windows, averaging_s, is_robust)
             self._means[averaged] = windows.columns_of_runs | means

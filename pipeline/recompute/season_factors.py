@@ -73,7 +73,8 @@ def get_instruments(plan: Plan, rows: pl.DataFrame | None) -> pl.DataFrame:
     """
     own = plan.tows.frame.select("tow_id", "season", "log1_part")
     known = pl.DataFrame(schema=INSTRUMENTS) if rows is None else rows
-    joined = own.join(known.select(*INSTRUMENTS), on="tow_id", how="left", maintain_order="left")
+    estimated = known.select(INSTRUMENTS.keys())
+    joined = own.join(estimated, on="tow_id", how="left", maintain_order="left")
     # A tow that takes no part in the estimate had the instruments of its season all the same.
     of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd")
     filled = joined.with_columns(of_season.fill_null(of_season.mean().over("season", "log1_part")))
@@ -99,7 +100,9 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     reference_ln = np.array([ln_factor.get(name, 0.0) for name in tows.frame["tow_id"]])
     log_speed = true_speed * np.exp(-reference_ln)
 
-    points = _make_water_points(c)
+    # Of the water alone: still air does not scale with the log's error.
+    water = tows.group_by_tow(c.cw_kg_m - c.still_air_kg_m)
+    points = curve.Points(c.points.speed_m_s, water, c.points.used & (water > 0))
     curves = curve.fit(points)
     errors = curve.covariance(points, curves, estimate_pure_error(c), log_speed)
     with_misfit = curve.covariance(points, curves, estimate_scatter(c, pooled=True), log_speed)
@@ -144,9 +147,13 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
         "reference_ratio": declared / true_speed,
         "reference_ln": reference_ln,
     }
-    names = ("tow_id", *LINE, "boat_type", "season", "altered", "declared_speed_m_s")
     rows = tows.frame.select(
-        *names,
+        "tow_id",
+        pl.col(LINE),
+        "boat_type",
+        "season",
+        "altered",
+        "declared_speed_m_s",
         pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
         pl.col("tow_date").dt.ordinal_day().cast(pl.Float64).alias("day"),
         pl.col("log1_part").alias("part"),
@@ -154,18 +161,12 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
         pl.Series("temperature_known", c.temperature.is_known),
         pl.Series("water_off_c", c.water_off_c),
         FORCE_SD.alias("force_sd"),
-        *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
-    )
+    ).with_columns(pl.DataFrame(numbers).fill_nan(None).get_columns())
     # A boat of which every tow is doubted stays as measured.
     is_observed = pl.col("ln_cw_sd") < UNOBSERVED_SD
-    rows = sort_tows(rows.drop_nulls("ln_cw")).filter(is_observed.any().over(*LINE, "state"))
+    is_boat_observed = is_observed.any().over(LINE + ("state",))
+    rows = sort_tows(rows.drop_nulls("ln_cw")).filter(is_boat_observed)
     return _add_calibrations(_add_kappa(rows.drop("state")))
-
-
-def _make_water_points(c: Computed) -> curve.Points:
-    """Return run points of the water alone: still air does not scale with the log's error."""
-    water = c.tows.group_by_tow(c.cw_kg_m - c.still_air_kg_m)
-    return curve.Points(c.points.speed_m_s, water, c.points.used & (water > 0))
 
 
 def _estimate_gps_ratio(c: Computed) -> tuple[FloatArray, FloatArray, BoolArray]:

@@ -64,11 +64,11 @@ def name_grounds(
     Returns:
         `LINE` and its `ground`.
     """
-    facts = (*LINE, "tow_id", "tow_date", "basis")
+    facts = LINE + ("tow_id", "tow_date", "basis")
     pairs = old.select(facts).join(
         new.select(facts), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
     )
-    is_rebased = set() if rebased is None else set(rebased.select(LINE).rows())
+    rebased_lines = set() if rebased is None else set(rebased.select(LINE).rows())
     named = []
     for pair in pairs.iter_rows(named=True):
         line = tuple(pair[name] for name in LINE)
@@ -78,23 +78,23 @@ def name_grounds(
             != (pair["tow_date_new" if is_print else "tow_id_new"])
         )
         is_other_input = pair["tow_id_new"] not in same
-        if line in is_rebased or not (method or is_print):
+        if line in rebased_lines or not (method or is_print):
             if is_other_tow:
                 ground = "tow"
             elif is_print:
                 ground = REPRODUCTION if pair["tow_id"] else CLOSED_FORM
             else:
-                ground = _input_or_code(is_other_input, others, code)
+                ground = _name_input_or_code(is_other_input, others, code)
         elif is_print:
             ground = "printed_and_tow" if is_other_tow else "printed"
         else:
             ground = "unseparated" if is_other_tow or is_other_input or code else "method"
-        named.append((*line, ground))
+        named.append(line + (ground,))
     schema = {name: old.schema[name] for name in LINE} | {"ground": pl.String()}
     return pl.DataFrame(named, schema=schema, orient="row")
 
 
-def _input_or_code(is_other_input: bool, others: bool, code: bool) -> str:
+def _name_input_or_code(is_other_input: bool, others: bool, code: bool) -> str:
     if is_other_input:
         return "input_and_code" if code else "input"
     if others:

@@ -30,7 +30,9 @@ RACE_S: Final = 7200.0
 SHOWN: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s", "rank", "tow_id")
 """Columns of both registers that stand beside each other in a comparison."""
 
-COMPARED: Final = ("tow_id", *SHOWN[:4], "cw_lo_kg_m", "cw_hi_kg_m")
+COMPARED: Final = (
+    "tow_id", "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s", "cw_lo_kg_m", "cw_hi_kg_m",
+)  # fmt: skip
 
 
 def compare_lines(
@@ -120,7 +122,7 @@ def compare_lines(
         known(slow, np.isfinite(slow)).alias("cw_ratio_slow"),
         known(fast, np.isfinite(fast)).alias("cw_ratio_fast"),
         pl.col(SHOWN).name.prefix("old_"),
-        *(pl.col(f"{name}_new").alias(f"new_{name}") for name in SHOWN),
+        pl.col([f"{name}_new" for name in SHOWN]).name.replace("^(.*)_new$", "new_$1"),
         pl.Series("old_power_w", old_power).fill_nan(None),
         known(old_power * declared).alias("new_power_w"),
         known(RACE_S * (time_ratio - 1.0)).alias("gain_in_two_hours_s"),
@@ -180,8 +182,9 @@ def _explain(
         causes: list[Row] = []
         line = tuple(pair[name] for name in LINE)
         if math.isfinite(ratio):
-            known = parts_of.get(line, ())
-            causes = [{k: v for k, v in part.items() if v is not None} for part in known]
+            for part in parts_of.get(line, ()):
+                known = {name: value for name, value in part.items() if value is not None}
+                causes.append(known)
             remainder = ratio / math.prod(cause["factor"] for cause in causes)
             if abs(remainder - 1.0) > NO_FACTOR or not causes:
                 ground = "method" if pair["tow_id"] == pair["tow_id_new"] else "tow"

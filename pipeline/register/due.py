@@ -10,7 +10,7 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.assessment.checks import CHECK
+from pipeline.assessment.checks import HIGHEST_POWER_W, LOWEST_POWER_W
 from pipeline.curve import VALID_RATIO
 from pipeline.races.power import find_line_curves, speed_at_power
 from pipeline.races.race import mean_speed_m_s, power_per_rower_w
@@ -18,12 +18,6 @@ from pipeline.register.register import LINE
 
 CREW: Final = LINE[:-1]
 """A boat's crew, whichever thwart it leaves free: results of races seldom say."""
-
-_IN_RANGE: Final = CHECK["power_outside_range"]
-LOWEST_W: Final = {c: _IN_RANGE.limits(c)[0] for c in ("H", "D")}
-HIGHEST_W: Final = {c: _IN_RANGE.limits(c)[1] for c in ("H", "D")}
-"""Power per rower at a realistic tow speed."""
-
 
 IN_RANGE = "in_range"
 TOO_FAST = "brought_down"
@@ -64,11 +58,11 @@ def due_list(
         register.join(
             boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left"
         )
-        .join(_raced(results, as_of), on=CREW, how="left", maintain_order="left")
+        .join(_find_raced_speeds(results, as_of), on=CREW, how="left", maintain_order="left")
         .sort(LINE)
     )
     own = lines.filter(pl.col("a_kg_m").is_not_null())
-    known = own.with_columns(_powers(own)).with_columns(_find_speed_of_own_curve())
+    known = _add_realistic_speeds(own).with_columns(_find_speed_of_own_curve())
     without = _find_speed_of_like_boats(lines.join(own, on=LINE, how="anti"), known)
     low = pl.col("declared_speed_m_s") * VALID_RATIO[0]
     high = pl.col("declared_speed_m_s") * VALID_RATIO[1]
@@ -94,7 +88,7 @@ def due_list(
     )
 
 
-def _raced(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
+def _find_raced_speeds(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
     """Return the fastest mean speed through the water of each crew in the year up to a day."""
     day = pl.col("race_date")
     lately = results.filter(day > pl.lit(as_of).dt.offset_by("-1y"), day <= as_of)
@@ -104,16 +98,19 @@ def _raced(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
     return raced.group_by(CREW, maintain_order=True).agg(pl.col("raced_speed_m_s").max())
 
 
-def _powers(lines: pl.DataFrame) -> list[pl.Series]:
-    """Return the power at the declared speed, and both ends of the realistic range of speeds."""
+def _add_realistic_speeds(lines: pl.DataFrame) -> pl.DataFrame:
+    """Add the power at the declared speed, and both ends of the realistic range of speeds."""
     a, s = find_line_curves(lines)
     rowers = lines["rowers"].to_numpy()
+    crew_class = lines["crew_class"]
+    lowest_w = crew_class.replace_strict(LOWEST_POWER_W, return_dtype=pl.Float64).to_numpy()
+    highest_w = crew_class.replace_strict(HIGHEST_POWER_W, return_dtype=pl.Float64).to_numpy()
     power = power_per_rower_w(lines["cw_kg_m"], lines["declared_speed_m_s"], rowers)
-    ends = {}
-    for name, watt in (("lowest_speed_m_s", LOWEST_W), ("highest_speed_m_s", HIGHEST_W)):
-        of_class = lines["crew_class"].replace_strict(watt, return_dtype=pl.Float64).to_numpy()
-        ends[name] = speed_at_power(a, s, of_class * rowers)
-    return [pl.Series("power_w", power), *(pl.Series(n, v) for n, v in ends.items())]
+    return lines.with_columns(
+        power_w=pl.Series(power),
+        lowest_speed_m_s=pl.Series(speed_at_power(a, s, lowest_w * rowers)),
+        highest_speed_m_s=pl.Series(speed_at_power(a, s, highest_w * rowers)),
+    )
 
 
 def _find_speed_of_own_curve() -> list[pl.Expr]:

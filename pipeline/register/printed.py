@@ -36,7 +36,7 @@ def rebase_printed(
     """
     lines = printed.drop_nulls(("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s"))
     known = dict(log_factors.select("season", "factor").rows())
-    factor = np.array([_season_factor(day.year, known, method) for day in lines["tow_date"]])
+    factor = np.array([_find_factor(day.year, known, method) for day in lines["tow_date"]])
     a, b = rebase(lines["a_kg_m"], lines["b_m_s"], factor)
     return lines.with_columns(
         valid_until(pl.col("tow_date"), method.validity).alias("valid_until"),
@@ -65,7 +65,7 @@ def carried_lines(
     return without_samples.unique(TOW_DAY, keep="last", maintain_order=True)
 
 
-def _season_factor(season: int, known: dict[int, float], method: Method) -> float:
+def _find_factor(season: int, known: dict[int, float], method: Method) -> float:
     """Return true speed / printed speed.
 
     1 where the method calibrates every tow on GPS: in those seasons the printed number was

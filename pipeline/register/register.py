@@ -14,12 +14,12 @@ import polars as pl
 from pipeline.method.definition import RegisterRule
 from pipeline.tables.keys import LINE as CREW
 
-LINE: Final = (*CREW, "empty_thwart")
+LINE: Final = CREW + ("empty_thwart",)
 """What a line is for. A curve measured with a thwart left free holds only with that thwart free
 (Sleepproef, R. Pot 2017, "Bemanning"); `NO_EMPTY_THWART` where all are manned."""
 
 NO_EMPTY_THWART: Final = ""
-TOW_DAY: Final = (*LINE, "tow_date")
+TOW_DAY: Final = LINE + ("tow_date",)
 """What tells tows apart in lists and in print, which have no number of a tow."""
 CURVE_COLUMNS: Final = (
     "tow_id",
@@ -45,7 +45,6 @@ CARRIED_COLUMNS: Final = (
 )
 """What a printed line says, of those."""
 
-CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 MEASURED: Final = "measured"
 """The basis of a line that was computed from a tow."""
 
@@ -103,7 +102,7 @@ def reference_day(tows: pl.DataFrame, results: pl.DataFrame) -> dt.date:
 
     Not today: the same archive gives the same tables.
     """
-    day: dt.date = max([*tows["tow_date"], *results["race_date"]])
+    day: dt.date = max(tows["tow_date"].to_list() + results["race_date"].to_list())
     return day
 
 
@@ -134,28 +133,26 @@ def draft_register(
         decision, and there is no other tow.
     """
     made_by_then = tows.filter(pl.col("tow_date") <= on_date)
-    towed = _towed(apply_rule(curves, rule), made_by_then)
+    towed = _add_days(apply_rule(curves, rule), made_by_then)
     curved = towed.filter(pl.col("status") != "rejected")
-    sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
+    sound = curved.join(_find_doubted(tows, decisions), on="tow_id", how="anti")
     history = lines_of_all_days(curves, made_by_then, rule, decisions, carried)
     chosen = lines_on_days(history, [on_date]).drop("as_of")
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(
         pl.col(LINE[:-1]), pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
     )
-    without = [
-        (sound.join(chosen, on=LINE, how="anti"), "excluded"),
-        (curved.join(sound, on=LINE, how="anti"), DOUBTED),
-        (towed.join(curved, on=LINE, how="anti"), "rejected"),
-        (
-            crews.join(towed, on="fsn_no", how="anti").join(chosen, on="fsn_no", how="anti"),
-            "never_towed",
-        ),
-    ]
-    lines = [
-        frame.select(LINE).unique().with_columns(pl.lit(status).alias("status"))
-        for frame, status in without
-    ]
-    both = pl.concat([chosen, *lines], how="diagonal")
+    never_towed = crews.join(towed, on="fsn_no", how="anti").join(chosen, on="fsn_no", how="anti")
+    without = {
+        "excluded": sound.join(chosen, on=LINE, how="anti"),
+        DOUBTED: curved.join(sound, on=LINE, how="anti"),
+        "rejected": towed.join(curved, on=LINE, how="anti"),
+        "never_towed": never_towed,
+    }
+    parts = [chosen]
+    for status, frame in without.items():
+        lines = frame.select(LINE).unique()
+        parts.append(lines.with_columns(status=pl.lit(status)))
+    both = pl.concat(parts, how="diagonal")
     return both.with_columns(pl.lit(on_date).alias("as_of")).sort(LINE)
 
 
@@ -175,10 +172,10 @@ def lines_of_all_days(
         `LINE` and `CURVE_COLUMNS` of every tow that can count, in such an order that on any day the
         last one counts whose `tow_date` is not after it.
     """
-    curved = _towed(apply_rule(curves, rule), tows).filter(pl.col("status") != "rejected")
-    sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    allowed = sound.join(_add_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
-    is_preferred = pl.col("tow_id").is_in(_add_verdict(decisions, PREFER)["tow_id"].implode())
+    curved = _add_days(apply_rule(curves, rule), tows).filter(pl.col("status") != "rejected")
+    sound = curved.join(_find_doubted(tows, decisions), on="tow_id", how="anti")
+    allowed = sound.join(decisions.filter(verdict=EXCLUDE), on="tow_id", how="anti")
+    is_preferred = pl.col("tow_id").is_in(decisions.filter(verdict=PREFER)["tow_id"].implode())
     until = valid_until(pl.col("tow_date"), rule).alias("valid_until")
     lines = allowed.with_columns(until, basis=pl.lit(MEASURED), is_preferred=is_preferred)
     if carried is not None:
@@ -210,7 +207,7 @@ def lines_on_days(
     return (
         history.join(days_of, how="cross", maintain_order="left")
         .filter(begun)
-        .group_by("as_of", *key, maintain_order=True)
+        .group_by(["as_of"] + list(key), maintain_order=True)
         .last()
         .with_columns(status.alias("status"))
     )
@@ -256,7 +253,7 @@ def flag_unmeasured(
     """
     newer = unmeasured.select(pl.col(LINE), unmeasured_on="tow_date")
     joined = lines.join(newer, on=LINE, how="left", maintain_order="left")
-    preferred = _add_verdict(decisions, PREFER)["tow_id"].to_list()
+    preferred = decisions.filter(verdict=PREFER)["tow_id"].to_list()
     is_older = (
         (pl.col("status") == "valid")
         & (pl.col("tow_date") < pl.col("unmeasured_on"))
@@ -267,7 +264,7 @@ def flag_unmeasured(
     return joined.with_columns(flagged.alias("flags")).drop("unmeasured_on")
 
 
-def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+def _add_days(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Return curves with the day of their tow and the thwart that was left free."""
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
     return curves.join(
@@ -275,26 +272,23 @@ def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
+def _find_doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
     """Return tows that the rest of the archive rules out and nobody confirmed."""
     if "doubts" not in tows.columns:
         return tows.clear()
     doubted = tows.filter(pl.col("doubts").list.len() > 0)
-    return doubted.join(_add_verdict(decisions, PREFER), on="tow_id", how="anti")
+    return doubted.join(decisions.filter(verdict=PREFER), on="tow_id", how="anti")
 
 
 def apply_rule(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
     """Return curves with the estimate that the rule asks for; A follows Cw, B stays."""
     if rule.estimate == "as_measured":
         return curves
-    best = pl.col("cw_best_kg_m").is_not_null()
-    ratio = pl.when(best).then(pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).otherwise(1.0)
-    chosen = {name: f"cw_best{name.removeprefix('cw')}" for name in CW_COLUMNS}
+    has_best = pl.when(pl.col("cw_best_kg_m").is_not_null())
+    ratio = has_best.then(pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).otherwise(1.0)
     return curves.with_columns(
-        pl.col("a_kg_m") * ratio,
-        *(pl.when(best).then(other).otherwise(own).alias(own) for own, other in chosen.items()),
+        a_kg_m=pl.col("a_kg_m") * ratio,
+        cw_kg_m=has_best.then("cw_best_kg_m").otherwise("cw_kg_m"),
+        cw_lo_kg_m=has_best.then("cw_best_lo_kg_m").otherwise("cw_lo_kg_m"),
+        cw_hi_kg_m=has_best.then("cw_best_hi_kg_m").otherwise("cw_hi_kg_m"),
     )
-
-
-def _add_verdict(decisions: pl.DataFrame, verdict: str) -> pl.DataFrame:
-    return decisions.filter(pl.col("verdict") == verdict)

@@ -5,7 +5,6 @@ whole race file. Which rules a race was rowed under is data: `RaceRules`. Wind, 
 no part of the handicap (presentation R. Pot, 24 January 2015).
 """
 
-import operator
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -21,8 +20,9 @@ from pipeline.register.register import LINE, NO_EMPTY_THWART
 Fatigue = Literal["none", "known", "extend"]
 
 RACE: Final = ("race", "race_date")
-CLASSIFICATION: Final = (*RACE, "crew_class")
-RESULT: Final = (*RACE, *LINE[:-1], "rowing_time_s")
+CREW: Final = LINE[:-1]
+CLASSIFICATION: Final = RACE + ("crew_class",)
+RESULT: Final = RACE + CREW + ("rowing_time_s",)
 PODIUM: Final = 3
 
 CURVE: Final = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")
@@ -74,7 +74,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     resistance = cw(np.nan_to_num(a), np.nan_to_num(s), speed)
     has_line = np.isfinite(a)
     sound = has_line & np.isfinite(resistance)
-    fatigue = _fatigue(rowed, rules)
+    fatigue = _compute_fatigue(rowed, rules)
     power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, rowed["rowers"]) * fatigue
     penalty = rowed["penalty_w"].fill_null(0.0).to_numpy()
     declared = rowed["declared_speed_m_s"].to_numpy()
@@ -89,8 +89,8 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
         .with_columns(
             pl.Series("speed_m_s", speed),
             pl.Series("fatigue_factor", fatigue),
-            _where(sound, "cw_kg_m", resistance),
-            _where(sound, "power_w", power - penalty),
+            pl.Series("cw_kg_m", np.where(sound, resistance, np.nan)).fill_nan(None),
+            pl.Series("power_w", np.where(sound, power - penalty, np.nan)).fill_nan(None),
             pl.Series("remark", remark, pl.String),
         )
         .with_columns(rank.alias("rank"))
@@ -104,11 +104,10 @@ def _add_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
     A result that names no empty thwart was rowed with all manned, where the boat has such a line;
     else with the one thwart free that its line asks for.
     """
-    crew = LINE[:-1]
-    facts = ("tow_id", "tow_date", "valid_until", *CURVE)  # fmt: skip
+    facts = ("tow_id", "tow_date", "valid_until") + CURVE
     numbered = results.with_row_index("result").rename({"empty_thwart": "given"})
-    pairs = numbered.select("result", "race_date", *crew, "given").join(
-        lines.select(pl.col(LINE), *facts), on=crew, maintain_order="left_right"
+    pairs = numbered.select("result", "race_date", pl.col(CREW), "given").join(
+        lines.select(LINE + facts), on=CREW, maintain_order="left_right"
     )
     fits = pl.col("given").is_null() | (pl.col("given") == pl.col("empty_thwart"))
     begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= pl.col("race_date"))
@@ -132,7 +131,7 @@ def _add_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
     )
     return (
         numbered.join(
-            told.select("result", "empty_thwart", *facts),
+            told.select("result", "empty_thwart", pl.col(facts)),
             on="result",
             how="left",
             maintain_order="left",
@@ -159,15 +158,14 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         and whether it is on the podium in one of the two only (`podium_changed`); the last three
         are null where a register has no power.
     """
-    columns = ["power_w", "rank", "remark"]
-    before, after = _placed_under_both(old, new), _placed_under_both(new, old)
-    pairs = before.select(pl.col(RESULT), *columns).join(
-        after.select(pl.col(RESULT), "empty_thwart", *columns),
+    before, after = _rank_under_both(old, new), _rank_under_both(new, old)
+    pairs = before.select(pl.col(RESULT), "power_w", "rank", "remark").join(
+        after.select(pl.col(RESULT), "empty_thwart", "power_w", "rank", "remark"),
         on=RESULT,
         suffix="_new",
         maintain_order="left",
     )
-    podiums = (pl.col(name) <= PODIUM for name in ("rank", "rank_new"))
+    was_on_podium, is_on_podium = pl.col("rank") <= PODIUM, pl.col("rank_new") <= PODIUM
     return pairs.select(
         pl.col(RACE),
         pl.col(LINE),
@@ -178,11 +176,11 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         pl.col("remark_new").alias("new_remark"),
         pl.col("rank").alias("old_rank"),
         pl.col("rank_new").alias("new_rank"),
-        operator.ne(*podiums).alias("podium_changed"),
+        (was_on_podium != is_on_podium).alias("podium_changed"),
     ).sort(pl.col(CLASSIFICATION), "new_rank", "fsn_no", nulls_last=True)
 
 
-def _placed_under_both(results: pl.DataFrame, others: pl.DataFrame) -> pl.DataFrame:
+def _rank_under_both(results: pl.DataFrame, others: pl.DataFrame) -> pl.DataFrame:
     """Rank results among those that have a power in `others` too; null for the rest."""
     both = others.drop_nulls("power_w").select(pl.col(RESULT), shared=pl.lit(True))
     placed = results.join(both, on=RESULT, how="left", maintain_order="left")
@@ -207,7 +205,7 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
         One row per race and class: `old_winner`, `new_winner` (boat; null where nobody has a
         power), `winner_changed` and `change_probability` (null where it is not known).
     """
-    before, after = _placed_under_both(old, new), _placed_under_both(new, old)
+    before, after = _rank_under_both(old, new), _rank_under_both(new, old)
     both = after.select(CLASSIFICATION).unique(maintain_order=True)
     for side, results in (("old", before), ("new", after)):
         first = results.filter(rank=1).sort(LINE).group_by(CLASSIFICATION, maintain_order=True)
@@ -215,7 +213,7 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
             pl.col("fsn_no").first().alias(f"{side}_winner"), _CREW.first().alias(side)
         )
         both = both.join(winners, on=CLASSIFICATION, how="left", maintain_order="left")
-    chances = _change_probabilities(after, both.select(pl.col(CLASSIFICATION), "old"), members)
+    chances = _estimate_chances(after, both.select(pl.col(CLASSIFICATION), "old"), members)
     return (
         both.join(chances, on=CLASSIFICATION, how="left", maintain_order="left")
         .with_columns(winner_changed=pl.col("old").ne_missing(pl.col("new")))
@@ -233,7 +231,7 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
 _CREW: Final = pl.concat_str(LINE, separator=" ")
 
 
-def _change_probabilities(
+def _estimate_chances(
     results: pl.DataFrame, old_winners: pl.DataFrame, members: pl.DataFrame
 ) -> pl.DataFrame:
     """Return how likely another than the old winner wins each race and class.
@@ -262,14 +260,10 @@ def _change_probabilities(
     )
 
 
-def _fatigue(results: pl.DataFrame, rules: RaceRules) -> FloatArray:
+def _compute_fatigue(results: pl.DataFrame, rules: RaceRules) -> FloatArray:
     """Return the factor against the fastest sloop of the race."""
     if rules.fatigue == "none":
         return np.ones(results.height)
     fastest = results.select(pl.col("rowing_time_s").min().over(RACE)).to_series()
     outside: Literal["refuse", "extend"] = "refuse" if rules.fatigue == "known" else "extend"
     return fatigue_factor(results["rowing_time_s"], fastest, outside)
-
-
-def _where(known: np.ndarray, name: str, values: FloatArray) -> pl.Expr:
-    return pl.when(pl.Series(known)).then(pl.Series(np.where(known, values, 0.0))).alias(name)

@@ -18,7 +18,7 @@ from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name, lines_on
 from pipeline.register.replay import RaceRules, replay, winner_changes
 from pipeline.tables.register import RegisterYears, YearWinners
 
-KEY = ("edition", "method", *LINE)
+KEY = ("edition", "method") + LINE
 
 
 def register_years(
@@ -57,7 +57,7 @@ def register_years(
                 year=pl.lit(season, pl.Int32),
                 method=pl.lit(method.name),
                 published_method=pl.lit(published.name),
-            ).join(own_facts, on=["year", "method", *LINE], how="left", maintain_order="left")
+            ).join(own_facts, on=("year", "method") + LINE, how="left", maintain_order="left")
             renamed = named.rename(_published_and_own)
             compared.append(renamed.select(RegisterYears.column_names()))
     return pl.concat(compared)

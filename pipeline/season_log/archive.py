@@ -107,7 +107,7 @@ def average_over_boat(
 
 def sort_tows(tows: pl.DataFrame) -> pl.DataFrame:
     """Sort tows by boat, crew and time; add `state`, the number of reported alterations so far."""
-    return tows.sort(*LINE, *LOG, "tow_id").with_columns(
+    return tows.sort(LINE + LOG + ("tow_id",)).with_columns(
         pl.col("altered").fill_null(False).cum_sum().over(LINE).alias("state")
     )
 
@@ -120,7 +120,7 @@ def build_archive(tows: pl.DataFrame, priors: Priors) -> Archive:
     """
     _check_numbers(tows)
     frame = sort_tows(tows)
-    boat = frame.select(pl.struct(*LINE, "state").rank("dense") - 1).to_series().to_numpy()
+    boat = frame.select(pl.struct(LINE + ("state",)).rank("dense") - 1).to_series().to_numpy()
     boat = boat.astype(np.int64)
     hull = (frame["fsn_no"].rank("dense") - 1).to_numpy().astype(np.int64)
     is_observed = (to_numpy(frame, "ln_cw_sd") < UNOBSERVED_SD).astype(np.bool_)
@@ -200,7 +200,8 @@ def _list_logs(
         .sort(LOG)
         .with_row_index("row")
     )
-    row = frame.join(logs.select("row", *LOG), on=LOG, how="left", maintain_order="left")["row"]
+    rows_of_logs = logs.select("row", pl.col(LOG))
+    row = frame.join(rows_of_logs, on=LOG, how="left", maintain_order="left")["row"]
     log = np.where(frame["anchored"], ANCHORED, row.cast(pl.Int64).fill_null(ANCHORED).to_numpy())
 
     # The network: nodes are the anchor, the logs and the boats; a tow is an edge from its boat to

@@ -78,17 +78,15 @@ def diagnose_seasons(posterior: Posterior) -> pl.DataFrame:
         if effect.season is not None:
             instruments.setdefault((effect.season, effect.part, effect.name), []).append(place)
     evidence = _describe_evidence(posterior.fit.model.archive)
-    rows = [
-        {"season": season, "part": part, "instrument": name, "rests_on": evidence[season]}
-        | _diagnose_instrument(posterior, name, np.array(instruments[season, part, name]))
-        for season, part, name in sorted(instruments)
-    ]
+    rows = []
+    for season, part, name in sorted(instruments):
+        places = np.array(instruments[season, part, name])
+        row = {"season": season, "part": part, "instrument": name, "rests_on": evidence[season]}
+        rows.append(row | _diagnose_instrument(posterior, name, places))
     levels = compare_season_levels(posterior.fit)
-    rows += [
-        {"season": season, "part": 0, "rests_on": evidence[season]}
-        | _diagnose_level(level, len(levels), posterior.fit.has_converged)
-        for season, level in levels.items()
-    ]
+    for season, level in levels.items():
+        row = {"season": season, "part": 0, "rests_on": evidence[season]}
+        rows.append(row | _diagnose_level(level, len(levels), posterior.fit.has_converged))
     return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA).sort("season", "part", "instrument")
 
 
@@ -142,7 +140,10 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
     unresolved = next((one for one in posterior.unresolved if one.place in places), None)
     if unresolved is not None:
         bounds.append(estimate + unresolved.size)
-        probability = max(probability or 0.0, _compute_probability_beside_alteration(fit))
+        # An alteration explains the boat's tows equally well, so prior probabilities decide.
+        fault_probability = fit.model.priors.fault_probability
+        of_instrument = float(fault_probability / (fault_probability + fit.share[0]))
+        probability = max(probability or 0.0, of_instrument)
     if probability is not None and probability >= DOUBT_PROBABILITY:
         likeliest = effects.faults[candidates[posterior.probability[candidates].argmax()]]
         first_tow = effects.listed[likeliest].first_tow
@@ -174,15 +175,6 @@ def _diagnose_instrument(posterior: Posterior, name: str, places: IntArray) -> d
         "shown_by": None if unresolved is None else ", ".join(unresolved.boats),
         "confused_with": ", ".join(confusions) or None,
     }
-
-
-def _compute_probability_beside_alteration(fit: Fit) -> float:
-    """Return the probability that an instrument failed and not that the one boat was altered.
-
-    Both explain the boat's tows equally well, so their prior probabilities decide.
-    """
-    fault = fit.model.priors.fault_probability
-    return float(fault / (fault + fit.share[0]))
 
 
 def _measure_distance_from_prior(fit: Fit, columns: IntArray) -> float | None:
@@ -232,14 +224,16 @@ def _list_confusions(
     fit, effects, test = posterior.fit, posterior.fit.model.effects, posterior.test
     is_hidden = ~posterior.would_show
     pass_for = fit.active[test.displaced[candidates[is_hidden[candidates]]]]
-    is_taken_for_this = is_hidden & np.isin(test.displaced, columns)
-    others = [effects.listed[p] for p in (*pass_for, *effects.faults[is_taken_for_this])]
-    own = {effects.listed[p].label for p in (*effects.faults[candidates], *fit.active[columns])}
+    taken_for_this = effects.faults[is_hidden & np.isin(test.displaced, columns)]
+    others = [effects.listed[place] for place in np.concatenate([pass_for, taken_for_this])]
+    own_places = np.concatenate([effects.faults[candidates], fit.active[columns]])
+    own_labels = {effects.listed[place].label for place in own_places}
     labels = []
     if has_too_few_boats:
         labels.append(ALTERED_BOAT)
         others = [effect for effect in others if effect.name not in BOAT_EFFECTS]
-    labels += [label for label in dict.fromkeys(e.label for e in others) if label not in own]
+    other_labels = dict.fromkeys(effect.label for effect in others)
+    labels += [label for label in other_labels if label not in own_labels]
     return labels
 
 

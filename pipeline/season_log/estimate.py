@@ -34,7 +34,7 @@ class SeasonFactors:
         calibration_sd: the same of tows calibrated on dGPS.
         tow_sd: standard deviation of ln Cw of a tow beyond its random part, its log and its zero.
         tow_zero_n: standard deviation of the load cell's zero from tow to tow, N.
-        ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
+        ageing_per_year: change of ln Cw per year that all boats share.
         drift_sd: standard deviation of what a boat drifts from that in a year.
         tows, weights: what was estimated of each tow (`tow_estimates.estimate_tows`).
         diagnosis: what is wrong in each season (`diagnosis`).
@@ -47,7 +47,6 @@ class SeasonFactors:
     tow_sd: float
     tow_zero_n: float
     ageing_per_year: float
-    ageing_sd: float
     drift_sd: float
     tows: pl.DataFrame
     weights: pl.DataFrame
@@ -150,7 +149,6 @@ def estimate_season_factors(tows: pl.DataFrame, near: Fit | None = None) -> Seas
         tow_sd=sd[0],
         tow_zero_n=sd[-2],
         ageing_per_year=float(fit.value[ageing]),
-        ageing_sd=float(np.sqrt(fit.covariance[ageing, ageing])),
         drift_sd=sd[-1],
         tows=of_tows,
         weights=weights,

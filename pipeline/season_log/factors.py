@@ -85,7 +85,7 @@ def make_factor_table(
         .then(pl.lit(BY_GPS))
         .otherwise(pl.lit(ESTIMATED))
     )
-    factors = archive.logs.with_columns(source.alias("source"), *columns)
+    factors = archive.logs.with_columns(source=source).with_columns(columns)
     return factors.drop("prior_ln", "prior_sd", "has_gps", "calibrated"), covariance
 
 

@@ -150,8 +150,11 @@ def find_rough_fit(model: Model, near: Fit | None = None) -> Fit:
 
 
 def _have_same_effects(one: Model, other: Model) -> bool:
-    keys = [[(e.kind, e.first_tow, e.sd) for e in model.effects.listed] for model in (one, other)]
-    return keys[0] == keys[1]
+    """Return whether two models have the same effects, each with the same prior."""
+    if len(one.effects.listed) != len(other.effects.listed):
+        return False
+    pairs = zip(one.effects.listed, other.effects.listed, strict=True)
+    return all((a.kind, a.first_tow, a.sd) == (b.kind, b.first_tow, b.sd) for a, b in pairs)
 
 
 def _search_faults(model: Model, start: Fit | None, with_patterns: bool) -> Fit:

@@ -73,17 +73,11 @@ class Model:
 
     @property
     def ln_variance_scale(self) -> FloatArray:
-        """Ln of the squared prior scale of each variance, in the order of `list_variance_names`."""
+        """Ln of the squared prior scale of each variance, in the order of `Fit.ln_variance`."""
         p = self.priors
-        log_sd = [p.tow_log_sd] * len(p.era_starts)
         of_numbers = [p.tow_sd, p.tow_bend_sd, p.tow_gps_sd]
-        return 2.0 * np.log([*of_numbers, *log_sd, p.calibration_sd, p.tow_zero_n, p.drift_sd])
-
-
-def list_variance_names(priors: Priors) -> list[str]:
-    """Return the names of the variance components, in the order of all arrays of variances."""
-    eras = [f"log between tows from {first}" for first in priors.era_starts]
-    return ["ln Cw", "bend", "GPS", *eras, "anchored log", "zero", "drift per year"]
+        of_logs = [p.tow_log_sd] * len(p.era_starts) + [p.calibration_sd]
+        return 2.0 * np.log(of_numbers + of_logs + [p.tow_zero_n, p.drift_sd])
 
 
 def build_model(archive: Archive, priors: Priors) -> Model:
@@ -100,7 +94,8 @@ class Fit:
         active: (k,) places of the effects in the model.
         value: (k,) posterior mode of the effects.
         covariance: (k, k) of their posterior.
-        ln_variance: (v,), in the order of `list_variance_names`.
+        ln_variance: (v,) of ln Cw, bend and GPS between tows; of the log between tows, for each
+            era and for anchored tows; of the load cell's zero; of the drift per year.
         share: (2,) of gaps with an unreported alteration, and of early tows pulled askew.
         linear: the forward model at the estimate.
         boats: posterior of each group of boats.

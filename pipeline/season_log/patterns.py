@@ -105,8 +105,7 @@ def compute_random_design(
 
     Args:
         variance: (v,) of ln Cw, bend and GPS between tows, of the log between tows per era and of
-            anchored tows, of the load cell's zero between tows [N²], and of the drift per year
-            (`fit.list_variance_names`).
+            anchored tows, of the load cell's zero between tows [N²], and of the drift per year.
 
     Returns:
         (b, 3 T, v, T). An effect is of its tow alone; but a drift since the tow before is of all

@@ -40,21 +40,17 @@ def compare_season_levels(fit: Fit) -> dict[int, SeasonLevel]:
     archive = fit.model.archive
     prior_precision = fit.model.priors.level_sd**-2.0
     information_of_effects: FloatArray = np.linalg.inv(fit.covariance).astype(np.float64)
+    season = np.array([fit.model.effects.listed[place].season for place in fit.active])
+    is_scale_fault = fit.is_fault & (fit.name == FORCE)
     levels = {}
     for year in np.unique(archive.season).astype(int).tolist():
-        others = np.flatnonzero(~_find_scale_fault(fit, year))
+        others = np.flatnonzero(~(is_scale_fault & (season == year)))
         cross, own, score = _measure_level(fit, archive.season == year)
         covariance = np.linalg.inv(information_of_effects[np.ix_(others, others)])
         information = max(own - float(cross[others] @ covariance @ cross[others]), 0.0)
         precision = information + prior_precision
         levels[year] = SeasonLevel(ln_ratio=score / precision, sd=precision**-0.5)
     return levels
-
-
-def _find_scale_fault(fit: Fit, year: int) -> BoolArray:
-    """Return which effects of the fit are a scale fault of the load cell in a season, (k,)."""
-    season = np.array([fit.model.effects.listed[place].season for place in fit.active])
-    return np.asarray(fit.is_fault & (fit.name == FORCE) & (season == year))
 
 
 def _measure_level(fit: Fit, is_own: BoolArray) -> tuple[FloatArray, float, float]:

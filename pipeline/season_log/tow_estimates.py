@@ -72,7 +72,7 @@ def estimate_tows(posterior: Posterior) -> tuple[pl.DataFrame, pl.DataFrame]:
         "best_lo": best[:, 1],
         "best_hi": best[:, 2],
     }
-    columns = [pl.Series(name, values).fill_nan(None) for name, values in numbers.items()]
+    columns = pl.DataFrame(numbers).fill_nan(None).get_columns()
     return archive.frame.with_columns(columns), weights
 
 

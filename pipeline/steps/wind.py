@@ -146,9 +146,9 @@ def nearest_coefficients(air: AirParts, excess_kg_m: FloatArray) -> tuple[FloatA
 def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
     """Return the quotient within `PER_RUN_BOUNDS`; the lower bound where there is no wind."""
     some = np.abs(denominator) > 1e-12
-    return np.clip(
-        np.where(some, numerator, 0.0) / np.where(some, denominator, 1.0), *PER_RUN_BOUNDS
-    )
+    quotient = np.where(some, numerator, 0.0) / np.where(some, denominator, 1.0)
+    lowest, highest = PER_RUN_BOUNDS
+    return np.clip(quotient, lowest, highest)
 
 
 def mean_angle_deg(sin: FloatArray, cos: FloatArray) -> FloatArray:

@@ -45,10 +45,10 @@ def ladder(
     cache = cache or RunCache()
     old = Plan.from_method(from_method, tows, blocks, cache)
     new = Plan.from_method(to_method, tows, blocks, cache)
-    of_old, of_new = links or (_instruments(plan) for plan in (old, new))
+    of_old, of_new = links or (_estimate_instruments(old), _estimate_instruments(new))
     rungs: list[Computed] = []
     for count in range(len(STEP_ORDER) + 1):
-        plan = _mixed(old, new, count)
+        plan = _mix_steps(old, new, count)
         if count > 1 and plan.steps == rungs[-1].plan.steps:  # both methods have this step alike
             rungs.append(rungs[-1])
         else:
@@ -56,22 +56,22 @@ def ladder(
     return _add_factors(rungs).sort("tow_id", "position")
 
 
-def _instruments(plan: Plan) -> pl.DataFrame | None:
-    asked = any(steps.speed.correction == "estimated" for steps in plan.steps)
-    estimated = estimate_season_factors(plan) if asked else None
+def _estimate_instruments(plan: Plan) -> pl.DataFrame | None:
+    """Return rows of `tow_instruments`; None where no log is to be estimated, or none can be."""
+    if not any(steps.speed.correction == "estimated" for steps in plan.steps):
+        return None
+    estimated = estimate_season_factors(plan)
     return None if estimated is None else estimated.tows
 
 
-def _mixed(old: Plan, new: Plan, count: int) -> Plan:
+def _mix_steps(old: Plan, new: Plan, count: int) -> Plan:
     """Return the old steps of each tow, the first `count` of `STEP_ORDER` being the new."""
     pairs, which = np.unique([old.which, new.which], axis=1, return_inverse=True)
-    steps = tuple(
-        old.steps[before].model_copy(
-            update={step: getattr(new.steps[after], step) for step in STEP_ORDER[:count]}
-        )
-        for before, after in pairs.T.tolist()
-    )
-    return Plan(old.tows, steps, which.ravel(), old.cache)
+    steps = []
+    for before, after in pairs.T.tolist():
+        exchanged = {step: getattr(new.steps[after], step) for step in STEP_ORDER[:count]}
+        steps.append(old.steps[before].model_copy(update=exchanged))
+    return Plan(old.tows, tuple(steps), which.ravel(), old.cache)
 
 
 def _add_factors(rungs: list[Computed]) -> pl.DataFrame:
@@ -83,7 +83,7 @@ def _add_factors(rungs: list[Computed]) -> pl.DataFrame:
     cw_known = cw[:, sound]
     factor = np.vstack([np.ones(cw_known.shape[1]), cw_known[1:] / cw_known[:-1]])
     tow_ids = rungs[0].tows.frame["tow_id"].filter(pl.Series(sound))
-    steps = (START, *STEP_ORDER)
+    steps = (START,) + STEP_ORDER
     return pl.DataFrame(
         {
             "tow_id": pl.concat([tow_ids] * len(steps)),

@@ -80,19 +80,21 @@ def option_effects(
     crossed = {name: (name, CHOICES[name]) for name in names if name != B}
     capped = plan.replace_steps(lambda steps: replace_options(steps, {B: "capped"}))
     frames = []
-    for flags, computed in _combinations(capped, crossed, links):
-        frames.append(_curves(computed, computed.curves, flags | {B: False}))
-        frames.append(_curves(computed, computed.free, flags | {B: True}))
+    for flags, computed in _evaluate_combinations(capped, crossed, links):
+        frames.append(_tabulate_curves(computed, computed.curves, flags | {B: False}))
+        frames.append(_tabulate_curves(computed, computed.free, flags | {B: True}))
     is_estimated = pl.Series(plan.options.speed.correction == "estimated")
     own_log = plan.tows.frame["tow_id"].filter(~is_estimated)
     whole = _select_complete(pl.concat(frames), ["tow_id"], len(names)).filter(
         pl.col("tow_id").is_in(own_log.implode())
     )
     prescribed = plan.tows.frame["tow_id"].filter(can)
-    effects = [
-        _effect(whole.filter(pl.col("tow_id").is_in(prescribed.implode()) | (name != FACTOR)), name)
-        for name in names
-    ]
+    effects = []
+    for name in names:
+        concerned = whole
+        if name == FACTOR:
+            concerned = whole.filter(pl.col("tow_id").is_in(prescribed.implode()))
+        effects.append(_compute_effect(concerned, name))
     return pl.concat(effects).sort("tow_id", "option")
 
 
@@ -112,14 +114,16 @@ def option_curves(
     plan = Plan.from_method(method, tows, blocks, cache)
     crossed = {name: choice for name, choice in TICKS.items() if name != B_FROM_LENGTH}
     frames = []
-    for speed, tow_ids, way in _speeds(plan):
-        for flags, computed in _combinations(way, crossed, links):
-            free = _curves(computed, computed.free, flags | {B_FROM_LENGTH: False})
-            tied = _curves(computed, _from_length(computed), flags | {B_FROM_LENGTH: True})
+    for speed, tow_ids, way in _list_speeds(plan):
+        for flags, computed in _evaluate_combinations(way, crossed, links):
+            hull_speed = hull_speed_m_s(computed.tows.get_of_tows("waterline_length_m"))
+            by_length = curve.fit_given_b(computed.points, hull_speed)
+            free = _tabulate_curves(computed, computed.free, flags | {B_FROM_LENGTH: False})
+            tied = _tabulate_curves(computed, by_length, flags | {B_FROM_LENGTH: True})
             both = pl.concat([free, tied]).filter(pl.col("tow_id").is_in(tow_ids.implode()))
             frames.append(both.with_columns(speed=pl.lit(speed)))
-    key = ["tow_id", "speed", *TICKS]
-    return pl.concat(frames).select(pl.col(key), "a_kg_m", "b_m_s", "cw_kg_m").sort(key)
+    key = ["tow_id", "speed"] + list(TICKS)
+    return pl.concat(frames).select(key + ["a_kg_m", "b_m_s", "cw_kg_m"]).sort(key)
 
 
 def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
@@ -133,17 +137,16 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
         every combination gives a curve.
     """
     whole = _select_complete(curves, ["tow_id", "speed"], len(TICKS))
-    ticks = [_effect(whole, name) for name in TICKS]
-    pairs = [
-        _effect(whole.filter(pl.col("speed").is_in(pair)), name, pl.col("speed") == pair[1])
-        for name, pair in SPEEDS.items()
-    ]
-    return pl.concat([*ticks, *pairs]).sort("tow_id", "option")
+    effects = [_compute_effect(whole, name) for name in TICKS]
+    for name, (first, second) in SPEEDS.items():
+        pair = whole.filter(pl.col("speed").is_in([first, second]))
+        effects.append(_compute_effect(pair, name, pl.col("speed") == second))
+    return pl.concat(effects).sort("tow_id", "option")
 
 
-def _speeds(plan: Plan) -> Iterator[tuple[str, pl.Series, Plan]]:
+def _list_speeds(plan: Plan) -> Iterator[tuple[str, pl.Series, Plan]]:
     """Yield each speed, the tows that have it, and a plan under which they do."""
-    ways = [_speeds_of(steps) for steps in plan.steps]
+    ways = [_list_ways(steps) for steps in plan.steps]
     for speed in (AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED):
         there = plan.tows.frame["tow_id"].filter([speed in ways[one] for one in plan.which])
         if there.len():
@@ -151,7 +154,7 @@ def _speeds(plan: Plan) -> Iterator[tuple[str, pl.Series, Plan]]:
             yield speed, there, replace(plan, steps=steps)
 
 
-def _speeds_of(steps: Steps) -> dict[str, Steps]:
+def _list_ways(steps: Steps) -> dict[str, Steps]:
     """Return the log as it reads, and each way in which a method makes a true speed of it."""
     as_read, no_gps = {"speed.correction": "none"}, {"calibration.rule": "none"}
     ways = {AS_READ: replace_options(steps, as_read | no_gps)}
@@ -175,7 +178,7 @@ def replace_options(steps: Steps, values: Mapping[str, object]) -> Steps:
     return steps
 
 
-def _combinations(
+def _evaluate_combinations(
     plan: Plan,
     crossed: Mapping[str, tuple[str, tuple[object, object]]],
     links: pl.DataFrame,
@@ -183,17 +186,16 @@ def _combinations(
     """Yield all combinations of choices: which are on, and the curves under them."""
     for corner in itertools.product((False, True), repeat=len(crossed)):
         flags = dict(zip(crossed, corner, strict=True))
-        values = {crossed[name][0]: crossed[name][1][on] for name, on in flags.items()}
+        values = {}
+        for name, is_on in flags.items():
+            option, choices = crossed[name]
+            values[option] = choices[is_on]
         yield flags, evaluate(plan.replace_steps(partial(replace_options, values=values)), links)
 
 
-def _from_length(computed: Computed) -> curve.Curves:
-    """Return the curves whose B is hull speed."""
-    hull = hull_speed_m_s(computed.tows.get_of_tows("waterline_length_m"))
-    return curve.fit_given_b(computed.points, hull)
-
-
-def _curves(computed: Computed, curves: curve.Curves, flags: Mapping[str, bool]) -> pl.DataFrame:
+def _tabulate_curves(
+    computed: Computed, curves: curve.Curves, flags: Mapping[str, bool]
+) -> pl.DataFrame:
     """Return the curves of tows that have one, with a column for each choice that is on or off."""
     cw = computed.cw_at(1.0, curves)
     frame = pl.DataFrame(
@@ -217,7 +219,7 @@ def _select_complete(curves: pl.DataFrame, key: list[str], choices: int) -> pl.D
     return curves.filter(every).with_columns(ln_cw=pl.col("cw_kg_m").log())
 
 
-def _effect(whole: pl.DataFrame, name: str, on: pl.Expr | None = None) -> pl.DataFrame:
+def _compute_effect(whole: pl.DataFrame, name: str, on: pl.Expr | None = None) -> pl.DataFrame:
     """Return the ratio of the second to the first Cw of each tow that has both."""
     on, ln_cw = pl.col(name) if on is None else on, pl.col("ln_cw")
     means = whole.group_by("tow_id", maintain_order=True).agg(

@@ -58,7 +58,7 @@ def print_reproduction(
         .sort("season")
         .join(
             tows.select("tow_id", "tow_date", pl.col(LINE)),
-            on=["tow_date", *LINE],
+            on=("tow_date",) + LINE,
             maintain_order="left",
         )
         .unique("tow_id", keep="first", maintain_order=True)

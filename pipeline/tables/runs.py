@@ -44,3 +44,21 @@ class RunPoints(PerTow):
         "of more runs at one target and direction: most_reliable, or why it is less so",
         nullable=True,
     )
+
+
+class TowCurrents(PerTow):
+    """The current of each tow with GPS both ways, along the course of the runs out."""
+
+    current_m_s = column.number("speed of the current; positive where it ran with the boat out")
+    current_lo_m_s = column.number("lower end of its 95 % interval")
+    current_hi_m_s = column.number("upper end of its 95 % interval")
+    current_change_m_s = column.optional(
+        "current of the runs back less that of the runs out; empty where too few other tows tell "
+        "the factor of the log"
+    )
+    current_change_lo_m_s = column.optional("lower end of its 95 % interval")
+    current_change_hi_m_s = column.optional("upper end of its 95 % interval")
+    current_verdict = column.text(
+        "changed (by more than 0.1 m/s and 3 standard deviations), no_change, or cannot be told",
+        regex="^(changed|no_change|cannot be told)$",
+    )

@@ -93,5 +93,5 @@ def draw_ln_errors(
 
 def _draw(key: str, members: int) -> FloatArray:
     """Draw standard normal errors from the random stream of a key."""
-    stream = np.random.default_rng(np.array([SEED, *key.encode()], dtype=np.uint32))
+    stream = np.random.default_rng(np.array([SEED] + list(key.encode()), dtype=np.uint32))
     return stream.standard_normal(members)

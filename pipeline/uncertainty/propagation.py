@@ -131,9 +131,6 @@ def list_components(assumed: Assumed) -> dict[str, Component]:
     }
 
 
-COMPONENTS: Final = tuple(list_components(Assumed()))
-
-
 def make_budget(inputs: pl.DataFrame, assumed: Assumed) -> pl.DataFrame:
     """Return every component of the uncertainty of Cw, per tow and speed.
 

@@ -13,7 +13,7 @@ import warehouse.intake.reading
 from assets.report import Done
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from tests.conftest import METHODS, SMALL, STUDIES, Workbench
-from warehouse.store.store import digest_table
+from tests.tables import digest_table
 
 pytestmark = pytest.mark.more
 

@@ -8,7 +8,7 @@ import pytest
 
 from dashboards import charts
 from dashboards.language import Language
-from dashboards.plot import LegendEntry, Plot, fit_scale
+from dashboards.plot import LegendEntry, Plot, fit_scale, make_standalone
 
 NL = Language("nl")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -92,7 +92,8 @@ DRAWN = {
 
 
 def pictures(markup):
-    return [ET.fromstring(one) for one in re.findall(r"<svg.*?</svg>", str(markup))]  # noqa: S314
+    found = re.findall(r"<svg.*?</svg>", str(markup))
+    return [ET.fromstring(make_standalone(one)) for one in found]  # noqa: S314
 
 
 def words(markup):

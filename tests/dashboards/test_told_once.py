@@ -11,7 +11,9 @@ from dashboards.queries.boats import read_boat
 from dashboards.queries.results import Results
 from dashboards.reading import read_blocks
 from dashboards.site import list_pages
+from dashboards.templates import get_template
 from dashboards.terminal import to_text
+from pipeline.assessment.checks import CODES
 from pipeline.messages import LANGUAGES
 from warehouse.queries.change_report import last_changes
 from warehouse.queries.views import Views
@@ -81,6 +83,12 @@ def test_a_terminal_shows_headings_in_bold_and_verdicts_in_colour_and_says_the_s
     assert "\x1b[1mVlet\x1b[0m" in coloured
     assert "\x1b[32mIn orde.\x1b[0m\nKlaar." in coloured
     assert re.sub(r"\x1b\[\d+m", "", coloured).strip() == to_text(html)
+
+
+def test_every_check_has_its_sentence_on_the_quay():
+    names = Document(Language("en")).get_names()
+    told = get_template("findings.html.j2").make_module(names).sentences
+    assert set(CODES) - told.keys() == set(), "say it in dashboards/templates/findings.html.j2"
 
 
 def get_words(block):

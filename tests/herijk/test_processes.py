@@ -11,7 +11,7 @@ import pytest
 
 from tests.conftest import METHODS, SMALL, Workbench
 from tests.herijk.conftest import hold_against_form
-from warehouse.store.store import digest_table
+from tests.tables import digest_table
 
 ROOT = Path(__file__).parents[2]
 THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")
@@ -57,6 +57,30 @@ def stopped(data):
 assets.settings.read_settings = stopped
 main()
 """
+
+
+IN_A_QUERY = """
+import os, signal, threading
+import click, duckdb
+from herijk.cli.main import app, main
+
+@click.command()
+def ask():
+    threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGTERM)).start()
+    duckdb.sql("SELECT count(*) FROM range(100000000000) WHERE range % 7 = 3").fetchall()
+
+app.add_command(ask)
+main()
+"""
+
+
+def test_a_query_that_is_stopped_is_no_unexpected_error():
+    run = subprocess.run(
+        [sys.executable, "-c", IN_A_QUERY, "ask"],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 130
+    assert run.stderr.lstrip().startswith("herijk: stopped as requested.")
 
 
 def test_what_systemd_stops_says_so(tmp_path: Path):

@@ -14,6 +14,7 @@ import pytest
 
 from pipeline.assessment.assess import add_status, assess
 from pipeline.assessment.checks import CODES
+from pipeline.assessment.currents import estimate_currents
 from pipeline.method.reading import parse_method, read_shipped_method
 
 METHOD = "some-method"
@@ -31,6 +32,7 @@ class World:
     run_points: pl.DataFrame
     tows: pl.DataFrame
     diagnosis: pl.DataFrame
+    currents: pl.DataFrame
 
     def changed(self, table: str, tow_id: str, **columns: Any) -> "World":
         """The world with some values of one tow replaced, by a value or an expression."""
@@ -49,7 +51,7 @@ class World:
         return replace(self, **{table: frame.with_columns(**values)})
 
     def assessed(self) -> pl.DataFrame:
-        return assess(self.curves, self.run_points, self.tows, self.diagnosis)
+        return assess(self.curves, self.run_points, self.tows, self.diagnosis, self.currents)
 
     def without_best_estimates(self) -> "World":
         """The same under a method that knows no boat by all of its tows."""
@@ -144,9 +146,10 @@ def sound() -> World:
     names = pl.List(pl.String)
     integers = {"season": pl.Int32, "rowers": pl.Int32, "run": pl.Int8, "direction": pl.Int8}
     curves = pl.DataFrame([_curve(tow) for tow in tows], schema_overrides=integers)
+    run_points = pl.DataFrame(points, schema_overrides=integers)
     return World(
         curves.cast({"runs_used": pl.Int8}),
-        pl.DataFrame(points, schema_overrides=integers),
+        run_points,
         pl.DataFrame(tows, schema_overrides=integers | dict.fromkeys(("doubts", "unusual"), names)),
         pl.DataFrame(
             {
@@ -158,6 +161,7 @@ def sound() -> World:
             },
             schema_overrides=integers,
         ),
+        estimate_currents(curves, run_points),
     )
 
 
@@ -214,6 +218,10 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "unusual_calibration": ("curves", SUBJECT, {"calibration_factor": 0.975}, 0.975, 0.98, set()),
     "log_not_linear": (
         "run_points", SUBJECT, {"gps_ratio": pl.col("speed_m_s") ** 0.03}, 0.03, 0.015, set(),
+    ),
+    "current_changed": (
+        "currents", SUBJECT, {"current_change_m_s": -0.15, "current_verdict": "changed"},
+        0.15, 0.1, set(),
     ),
     "log2_differs": (
         "run_points", SUBJECT, {"log2_ratio": pl.when(run1).then(0.99).otherwise(1.0)},

@@ -15,9 +15,10 @@ import pytest
 
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
+from tests.tables import digest_table
 from warehouse.store.database import open_database
 from warehouse.store.files import TEMPORARY_PREFIX
-from warehouse.store.store import Store, digest_table
+from warehouse.store.store import Store
 
 WORLD = WorldSettings(seasons=(2009, 2014), tows_per_season=4, rate_hz=20, seed=3)
 LOCK = f"{TEMPORARY_PREFIX}lock"

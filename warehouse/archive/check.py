@@ -5,7 +5,7 @@ each season whole.
 """
 
 import hashlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -21,7 +21,8 @@ from warehouse.archive.list_rules import read_published_registers, read_races
 from warehouse.archive.plausibility import judge_samples
 from warehouse.archive.profile import read_profiles
 from warehouse.archive.remedies import REMEDIES
-from warehouse.archive.samples import check_header, read_tow_samples
+from warehouse.archive.sample_files import check_header
+from warehouse.archive.samples import read_tow_samples
 
 SHOWN: Final = 3
 """Places of one cause."""
@@ -87,16 +88,15 @@ def check_archive(root: Path, language: str = "en") -> CheckReport:
     """
     profiles = read_profiles(root)
     index = index_archive(root, _hash_ends, profiles)
-    faults = list(index.faults)
-    for _, found in (read_races(root, profiles), read_published_registers(root, profiles)):
-        faults += found
-    of_headers = list(_faults_in_headers(root, index))
-    wrong = {fault.path for fault in of_headers}
-    faults += [*of_headers, *_faults_in_samples(root, index, wrong)]
+    _, race_faults = read_races(root, profiles)
+    _, register_faults = read_published_registers(root, profiles)
+    header_faults = list(_check_headers(root, index))
+    faults = list(index.faults) + race_faults + register_faults + header_faults
+    faults += _check_first_tows(root, index, {fault.path for fault in header_faults})
     names_of = {tow["tow_id"]: _name_tow(tow) for tow in index.tows.iter_rows(named=True)}
     costly = {fault.tow_id or fault.path for fault in faults if fault.lost is None}
-    sound = [tow_id for tow_id, names in names_of.items() if costly.isdisjoint(names)]
-    return CheckReport(str(root), len(sound), _group_causes(faults, names_of, language))
+    n_sound = sum(costly.isdisjoint(names) for names in names_of.values())
+    return CheckReport(str(root), n_sound, _report_causes(faults, names_of, language))
 
 
 def _name_tow(tow: Row) -> set[str]:
@@ -117,13 +117,14 @@ def _hash_ends(path: Path) -> str:
         return hashlib.sha256(start + file.read(_PIECE) + str(size).encode()).hexdigest()
 
 
-def _faults_in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
-    """Read the header of every samples file that a list names."""
+def _check_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
+    """Read the header of every samples file that a list names; yield what is wrong in it."""
     not_listed = {f.path for f in index.faults if f.reason_code == "samples_not_listed"}
     of_one_run: set[str] = set()
-    for name, numbers in (("samples_path", "samples_runs"), ("second_path", "second_runs")):
-        for path in index.tows.filter(pl.col(numbers).is_not_null())[name]:
-            of_one_run.update(path.split(PARTS))
+    for paths in index.tows.filter(pl.col("samples_runs").is_not_null())["samples_path"]:
+        of_one_run.update(paths.split(PARTS))
+    for paths in index.tows.filter(pl.col("second_runs").is_not_null())["second_path"]:
+        of_one_run.update(paths.split(PARTS))
     for file in list_files(root):
         if file.kind != SAMPLES or not file.inside or file.path in not_listed:
             continue
@@ -136,71 +137,79 @@ def _faults_in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
             yield fault_from(error, file.path)
 
 
-def _faults_in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fault]:
-    """Read the first tow of each season whose header is good."""
+def _check_first_tows(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fault]:
+    """Read the first tow of each season whose header is good; yield what is wrong in it."""
     done = set()
     for tow in index.tows.iter_rows(named=True):
-        if tow["season"] in done or not wrong.isdisjoint(_name_tow(tow)):
+        season, tow_id = tow["season"], tow["tow_id"]
+        if season in done or not wrong.isdisjoint(_name_tow(tow)):
             continue
-        done.add(tow["season"])
+        done.add(season)
         try:
-            profile = index.profiles.find(tow["season"])
-            samples, place, defects = read_tow_samples(root, tow, profile)
-            planned = index.runs.filter(tow_id=tow["tow_id"])["run"]
-            if not set(samples["run"].unique()) <= set(planned):
-                yield _unplanned_fault(tow, samples, planned)
+            samples, place, defects = read_tow_samples(root, tow, index.profiles.find(season))
+            present = samples["run"].unique().sort()
+            planned = index.runs.filter(tow_id=tow_id)["run"]
+            if not set(present) <= set(planned):
+                heading = f'[[plan]]\nseasons = "{season}"\n'
+                yield Fault(
+                    path=tow["samples_path"].split(PARTS)[0],
+                    reason_code="run_not_planned",
+                    message=say(
+                        "Runs {present} are in the file and runs {planned} are planned. Give the "
+                        "targets and directions of all runs under [[plan]] in archief.toml.",
+                        present=", ".join(map(str, present)),
+                        planned=", ".join(map(str, planned)),
+                    ),
+                    ask=(heading + 'targets = ["?"]', heading + 'directions = ["?"]'),
+                )
             yield from judge_samples(samples, place, tow, index.runs, defects).faults
         except BaseException as error:
-            yield fault_from(error, tow["samples_path"], tow["tow_id"])
+            yield fault_from(error, tow["samples_path"], tow_id)
 
 
-def _unplanned_fault(tow: Row, samples: pl.DataFrame, planned: pl.Series) -> Fault:
-    """Return the fault of other runs in a file than are planned."""
-    said = say(
-        "Runs {present} are in the file and runs {planned} are planned. Give the targets and "
-        "directions of all runs under [[plan]] in archief.toml.",
-        present=", ".join(map(str, samples["run"].unique().sort())),
-        planned=", ".join(map(str, planned)),
-    )
-    season = tow["season"]
-    lines = tuple(
-        f'[[plan]]\nseasons = "{season}"\n{key} = ["?"]' for key in ("targets", "directions")
-    )
-    path = tow["samples_path"].split(PARTS)[0]
-    return Fault(path, None, None, "run_not_planned", said, ask=lines)
-
-
-def _group_causes(
-    faults: Iterable[Fault], names_of: dict[str, set[str]], language: str
+def _report_causes(
+    faults: Iterable[Fault], names_of: Mapping[str, set[str]], language: str
 ) -> list[CauseReport]:
-    """Return the faults by cause, those that cost most tows first."""
+    """Return a report of each cause, those that cost most tows first."""
     by_cause: dict[tuple[str, str], list[Fault]] = {}
     for fault in dict.fromkeys(faults):
         by_cause.setdefault((fault.reason_code, fault.cause), []).append(fault)
-    reports = [_report_cause(same, names_of, language) for same in by_cause.values()]
+    reports = []
+    for (reason_code, _), same in by_cause.items():
+        cells: list[str] = []
+        ask: list[str] = []
+        for fault in same:
+            cell = getattr(innermost(fault.message), "values", {}).get("cell")
+            if cell is not None:
+                cells.append(str(cell))
+            ask += fault.ask
+        report = CauseReport(
+            reason_code=reason_code,
+            number=len(same),
+            tows=_count_tows(same, names_of),
+            sentence=spoken(innermost(same[0].message), language),
+            remedy=spoken(REMEDIES[reason_code], language),
+            cells=list(dict.fromkeys(cells)),
+            places=[Place(fault.path, fault.line, fault.tow_id) for fault in same[:SHOWN]],
+            ask=list(dict.fromkeys(ask)),
+        )
+        reports.append(report)
     return sorted(reports, key=lambda report: (-report.tows, -report.number))
 
 
-def _report_cause(faults: list[Fault], names_of: dict[str, set[str]], language: str) -> CauseReport:
-    said = [innermost(fault.message) for fault in faults]
-    cells = dict.fromkeys(getattr(sentence, "values", {}).get("cell") for sentence in said)
-    return CauseReport(
-        reason_code=faults[0].reason_code,
-        number=len(faults),
-        tows=_count_tows(faults, names_of),
-        sentence=spoken(said[0], language),
-        remedy=spoken(REMEDIES[faults[0].reason_code], language),
-        cells=[str(cell) for cell in cells if cell is not None],
-        places=[Place(f.path, f.line, f.tow_id) for f in faults[:SHOWN]],
-        ask=list(dict.fromkeys(line for fault in faults for line in fault.ask)),
-    )
-
-
-def _count_tows(faults: list[Fault], names_of: dict[str, set[str]]) -> int:
+def _count_tows(faults: Iterable[Fault], names_of: Mapping[str, set[str]]) -> int:
     """Return how many tows these faults cost, as far as is known before a rebuild."""
-    costly = [fault for fault in faults if fault.lost is None]
-    tow_ids = {fault.tow_id for fault in costly if fault.tow_id}
-    paths = {fault.path for fault in costly if not fault.tow_id and fault.line is None}
-    headers = {fault.path for fault in costly if fault.reason_code in OF_A_HEADER}
-    tow_ids |= {tow for tow, names in names_of.items() if names & (paths | headers)}
+    tow_ids: set[str] = set()
+    paths: set[str] = set()
+    for fault in faults:
+        if fault.lost is not None:
+            continue
+        if fault.tow_id:
+            tow_ids.add(fault.tow_id)
+        is_about_file = not fault.tow_id and fault.line is None
+        if is_about_file or fault.reason_code in OF_A_HEADER:
+            paths.add(fault.path)
+    for tow_id, names in names_of.items():
+        if not paths.isdisjoint(names):
+            tow_ids.add(tow_id)
     return len(tow_ids)

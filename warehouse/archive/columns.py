@@ -9,7 +9,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, reduce
+from functools import lru_cache
 from typing import Final, NamedTuple
 
 import polars as pl
@@ -141,19 +141,12 @@ class FoundColumn:
         )
 
 
+@lru_cache(10_000)
 def find_unit(dimension: str, unit: str) -> Scale | None:
     """Return the scale of a unit, written in any case and with any blanks; None if unknown."""
-    return _FOLDED_UNITS[dimension].get(_fold_unit(unit))
-
-
-def _fold_unit(unit: str) -> str:
-    return "".join(unit.casefold().split())
-
-
-_FOLDED_UNITS: Final = {
-    dimension: {_fold_unit(unit): scale for unit, scale in units.items()}
-    for dimension, units in UNITS.items()
-}
+    wanted = "".join(unit.casefold().split())
+    scales = UNITS[dimension]
+    return next((scales[known] for known in scales if known.casefold() == wanted), None)
 
 
 @lru_cache(100_000)
@@ -172,6 +165,11 @@ def fold_word(text: str) -> str:
 def shorten(text: str) -> str:
     """Return the text, cut to a length that fits in a sentence."""
     return text[:LONGEST_QUOTE] + ("..." if len(text) > LONGEST_QUOTE else "")
+
+
+def quote_names(names: Iterable[str]) -> str:
+    """Return names in quotation marks with commas between them, each cut as by `shorten`."""
+    return ", ".join(f"'{shorten(name.strip())}'" for name in names)
 
 
 def decode(data: bytes) -> str:
@@ -264,7 +262,7 @@ Ask = Callable[..., str]
 
 def find_columns(
     header: Sequence[str],
-    columns: Iterable[Column],
+    columns: Sequence[Column],
     line: int = 1,
     ask: Ask | None = None,
     also_ask: Sequence[str] = (),
@@ -289,17 +287,18 @@ def find_columns(
     for column in columns:
         for name in fold_names([column]):
             by_name.setdefault(name, []).append(column)
+    cells = []
+    for index, cell in enumerate(header):
+        name, unit = split_header(cell)
+        if name and name in by_name:
+            cells.append((index, unit, by_name[name]))
+    # First what can be one column only: of two names for `wind` the other one remains.
+    cells.sort(key=lambda cell: (cell[1] is None, len(cell[2])))
     found: dict[str, FoundColumn] = {}
     problems: list[_Problem] = []
     unsettled: set[str] = set()
-    cells = [(*split_header(cell), index) for index, cell in enumerate(header)]
-    # First what can be one column only: of two names for `wind` the other one remains.
-    cells.sort(key=lambda cell: (cell[1] is None, len(by_name.get(cell[0], []))))
-    for name, unit, index in cells:
-        namesakes = by_name.get(name, []) if name else []
-        if not namesakes:
-            continue
-        fitting = [c for c in namesakes if c.scale(unit) is not None]
+    for index, unit, namesakes in cells:
+        fitting = [column for column in namesakes if column.scale(unit) is not None]
         free = [column for column in fitting if column.key not in found]
         if len(free) == 1:
             scale = free[0].scale(unit) or Scale()
@@ -308,26 +307,25 @@ def find_columns(
         else:
             problem = _explain_column(header[index], unit, namesakes, fitting, free, found)
             problems.append(problem)
-            unsettled |= {column.key for column in namesakes}
-    wanted = dict.fromkeys(column for named in by_name.values() for column in named)
-    missing = [
-        column
-        for column in wanted
-        if column.required and column.key not in found and column.key not in unsettled
-    ]
+            unsettled.update(column.key for column in namesakes)
+    settled = found.keys() | unsettled
+    missing = [column for column in columns if column.required and column.key not in settled]
     if missing:
         said = say(
             "Not found in the header: {names}. Found: {found}.",
             names=", ".join(f"'{column.named}'" for column in missing),
-            found=", ".join(f"'{shorten(cell.strip())}'" for cell in header[:30]),
+            found=quote_names(header[:30]),
         )
         problems.append(_Problem("missing_column", said, [f"columns.{c.key}" for c in missing]))
-    if problems:
-        said = reduce(lambda one, other: say("{} {}", one, other), [p.said for p in problems])
-        keys = dict.fromkeys(key for problem in problems for key in problem.keys)
-        lines = [ask(key) for key in keys] if ask else []
-        raise DefectiveHeaderError(problems[0].reason_code, said, line, (*lines, *also_ask))
-    return found
+    if not problems:
+        return found
+    said = problems[0].said
+    keys = list(problems[0].keys)
+    for problem in problems[1:]:
+        said = say("{} {}", said, problem.said)
+        keys += problem.keys
+    lines = [ask(key) for key in dict.fromkeys(keys)] if ask else []
+    raise DefectiveHeaderError(problems[0].reason_code, said, line, lines + list(also_ask))
 
 
 class _Problem(NamedTuple):
@@ -347,12 +345,14 @@ def _explain_column(
     found: Mapping[str, FoundColumn],
 ) -> _Problem:
     """Return the fault of a cell that stands for no column, a taken one, or several."""
-    known = ", ".join(f"[{unit}]" for c in free or namesakes for unit in UNITS[c.dimension])
-    keys = [f"units.{column.key}" for column in free or namesakes]
+    units: list[str] = []
+    for column in free or namesakes:
+        units += UNITS[column.dimension]
+    known = ", ".join(f"[{one}]" for one in units)
     if not fitting:
         text = say("Column '{header}' has unit [{unit}]; known here: {known}.")
         said = say(text, header=shorten(cell.strip()), unit=shorten(unit or ""), known=known or "-")
-        return _Problem("unknown_unit", said, keys)
+        return _Problem("unknown_unit", said, [f"units.{column.key}" for column in namesakes])
     if not free:
         text = say("Columns '{first}' and '{second}' are the same; one of them has to go.")
         said = say(text, first=found[fitting[0].key].header, second=shorten(cell.strip()))

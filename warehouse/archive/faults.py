@@ -25,7 +25,7 @@ OF_A_HEADER: Final = ("missing_column", "unknown_column", "duplicate_column", "u
 """Reason codes of a header: of a list, they cost all of it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Fault:
     """Something that is set aside: seconds, a run, a tow, a file or a row of a list.
 
@@ -42,8 +42,8 @@ class Fault:
     """
 
     path: str
-    tow_id: str | None
-    line: int | None
+    tow_id: str | None = None
+    line: int | None = None
     reason_code: str
     message: str
     lost: Lost | None = None
@@ -63,7 +63,7 @@ class Fault:
         return {name: getattr(self, name) for name in facts} | words
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Failure(Fault):
     """A list on which Herijk itself failed, with the traceback."""
 
@@ -102,9 +102,14 @@ def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fa
         BaseException: the error, where it is neither about the input nor a fault of Herijk.
     """
     if isinstance(error, DefectiveInputError):
-        where = error.path if isinstance(error, DefectiveFileError) else path
-        ask = error.ask if isinstance(error, DefectiveHeaderError) else ()
-        return Fault(where, tow_id, error.line, error.reason_code, error.message, ask=ask)
+        return Fault(
+            path=error.path if isinstance(error, DefectiveFileError) else path,
+            tow_id=tow_id,
+            line=error.line,
+            reason_code=error.reason_code,
+            message=error.message,
+            ask=error.ask if isinstance(error, DefectiveHeaderError) else (),
+        )
     if not is_unforeseen(error):
         raise error
     message = say(
@@ -112,4 +117,10 @@ def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fa
         "maintainer of Herijk, with the folder unforeseen of the data folder.",
         shorten_error(error),
     )
-    return Failure(path, tow_id, None, UNFORESEEN, message, trace=format_traceback(error))
+    return Failure(
+        path=path,
+        tow_id=tow_id,
+        reason_code=UNFORESEEN,
+        message=message,
+        trace=format_traceback(error),
+    )

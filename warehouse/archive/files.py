@@ -28,13 +28,13 @@ SAMPLES: Final = "samples"
 TEXT_SUFFIXES: Final = (".csv", ".txt")
 REFUSED_SUFFIXES: Final = (".xls", ".ods")
 """Of lists that are told how to be saved."""
-LIST_SUFFIXES: Final = (*TEXT_SUFFIXES, ".xlsx", ".xlsm", *REFUSED_SUFFIXES)
+LIST_SUFFIXES: Final = TEXT_SUFFIXES + (".xlsx", ".xlsm") + REFUSED_SUFFIXES
 COMPRESSION: Final = {".gz": "gzip", ".zst": "zstd"}
-SAMPLE_TEXT_SUFFIXES: Final = (*TEXT_SUFFIXES, ".dat", ".tsv", ".asc")
-SAMPLE_SUFFIXES: Final = (
-    *(text + packed for packed in COMPRESSION for text in SAMPLE_TEXT_SUFFIXES),
-    *(*SAMPLE_TEXT_SUFFIXES, ".parquet", ".tdms", ".lvm"),
+SAMPLE_TEXT_SUFFIXES: Final = TEXT_SUFFIXES + (".dat", ".tsv", ".asc")
+PACKED_SUFFIXES: Final = tuple(
+    text + packed for packed in COMPRESSION for text in SAMPLE_TEXT_SUFFIXES
 )
+SAMPLE_SUFFIXES: Final = PACKED_SUFFIXES + SAMPLE_TEXT_SUFFIXES + (".parquet", ".tdms", ".lvm")
 PARTS: Final = " | "
 """Between the files of a tow that has a file for each run."""
 MAX_BYTES: Final = 250_000_000
@@ -81,20 +81,20 @@ def list_files(root: Path) -> list[ArchiveFile]:
         is_read = entry.is_dir() and (
             entry.name in list_folders or _SAMPLES_FOLDER.fullmatch(entry.name)
         )
-        own = _list_entries(entry) if is_read else [entry]
-        found += [_describe_file(root, file) for file in own]
+        for file in _list_entries(entry) if is_read else [entry]:
+            name = file.relative_to(root).as_posix()
+            path = os.fsencode(name).decode(errors="replace")
+            is_text = path == name  # or else bytes that are no text
+            kind, season = _find_kind(root, file) if is_text else ("", 0)
+            inside = _is_inside(root, file)
+            found.append(
+                ArchiveFile(path=path, full_path=file, kind=kind, season=season, inside=inside)
+            )
     return sorted(found, key=lambda file: file.path)
 
 
 def _list_entries(folder: Path) -> list[Path]:
     return [entry for entry in folder.iterdir() if not _NOT_OURS.fullmatch(entry.name)]
-
-
-def _describe_file(root: Path, entry: Path) -> ArchiveFile:
-    path = entry.relative_to(root).as_posix()
-    text = os.fsencode(path).decode(errors="replace")
-    kind, season = _find_kind(root, entry) if text == path else ("", 0)  # or bytes that are no text
-    return ArchiveFile(text, entry, kind, season, _is_inside(root, entry))
 
 
 def _find_kind(root: Path, entry: Path) -> tuple[ListKind | str, int]:

@@ -86,10 +86,10 @@ def index_archive(
     boats = read_boats(files, profiles)
     rows = read_lists(files, TOWS, profiles)
     listed = rows.listed.select("season", "tow_id", "tow_date", "file", "second_file")
-    checks, of_checks = read_within_border(
+    checks, check_faults = read_within_border(
         FORCE_CHECKS, files, lambda own: read_force_checks(own, profiles)
     )
-    burned, of_lamps = read_within_border(
+    burned, lamp_faults = read_within_border(
         LAMPS, files, lambda own: read_lamps(own, profiles, listed["tow_id"])
     )
     samples = index_samples(files, hashes)
@@ -99,17 +99,19 @@ def index_archive(
     tows = rows.to_table(ListedTows)
     runs = plan_runs(tows, selections, profiles)
     windows = check_hand_windows(window_rows, runs)
-    acceptances, of_acceptances = read_within_border(
+    acceptances, acceptance_faults = read_within_border(
         ACCEPTANCES, files, lambda own: read_acceptances(own, profiles, listed, runs)
     )
 
-    faults = [*boats.faults, *rows.faults, *of_checks, *of_lamps, *window_rows.faults]
-    faults += of_acceptances
+    faults = boats.faults + rows.faults + check_faults + lamp_faults + window_rows.faults
+    faults += acceptance_faults
     faults += _find_unread_files(files, profiles)
     faults += _find_unlisted_samples(files, listed, rows.unread, profiles)
-    faults += [] if rows.unread else _find_idle_settings(profiles, listed)
+    if not rows.unread:
+        faults += _find_idle_settings(profiles, listed)
     told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
     faults += [fault_from(error, error.path) for error in unread if error.path not in told]
+    file_rows = [(path, sha256, size) for path, (sha256, size) in sorted(hashes.items())]
     return ArchiveIndex(
         boats=boats.listed,
         tows=tows,
@@ -117,7 +119,7 @@ def index_archive(
         windows=windows,
         acceptances=acceptances,
         faults=tuple(sorted(faults, key=lambda f: (f.path, f.line or 0, f.tow_id or ""))),
-        files=frame_of(ListedFiles, sorted((path, *found) for path, found in hashes.items())),
+        files=frame_of(ListedFiles, file_rows),
         profiles=profiles,
     )
 
@@ -153,11 +155,12 @@ def _find_unread_files(files: Iterable[ArchiveFile], profiles: Profiles) -> list
         "'{path}' is not read: it has another name than the archive's files. Rename it, or put it "
         "under ignore in archief.toml."
     )
-    return [
-        Fault(file.path, None, None, "unrecognised_file", say(text, path=file.path))
-        for file in files
-        if not file.kind and fold(file.path) not in profiles.ignore
-    ]
+    faults = []
+    for file in files:
+        if not file.kind and fold(file.path) not in profiles.ignore:
+            said = say(text, path=file.path)
+            faults.append(Fault(path=file.path, reason_code="unrecognised_file", message=said))
+    return faults
 
 
 def _find_unlisted_samples(
@@ -183,7 +186,8 @@ def _find_unlisted_samples(
         if file.kind != SAMPLES or is_named or file.season in unread_seasons:
             continue
         if file.inside:
-            faults.append(Fault(file.path, None, None, "samples_not_listed", message))
+            fault = Fault(path=file.path, reason_code="samples_not_listed", message=message)
+            faults.append(fault)
         else:
             faults.append(fault_from(outside_archive_error(file.path), file.path))
     return faults
@@ -195,21 +199,22 @@ def _find_idle_settings(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]
     seasons = set(listed["season"])
     tows = set(listed["tow_id"])
 
-    def has_none(first: int, last: int) -> bool:
-        return not any(first <= season <= last for season in seasons)
+    def has_season(bounds: tuple[int, int]) -> bool:
+        return any(bounds[0] <= season <= bounds[1] for season in seasons)
 
-    said: list[tuple[str, object]] = [
-        ("set_aside", one.date) for one in profiles.set_aside if one.date not in days
-    ]
-    said += [
-        ("log_replaced", one.date) for one in profiles.log_replaced if one.date.year not in seasons
-    ]
-    said += [("profile", one.seasons) for one in profiles.profile if has_none(*one.seasons)]
+    idle_days = [one.date for one in profiles.set_aside if one.date not in days]
+    idle: list[tuple[str, object]] = [("set_aside", day) for day in idle_days]
+    idle_days = [one.date for one in profiles.log_replaced if one.date.year not in seasons]
+    idle += [("log_replaced", day) for day in idle_days]
+    idle_seasons = [one.seasons for one in profiles.profile if not has_season(one.seasons)]
+    idle += [("profile", bounds) for bounds in idle_seasons]
     for plan in profiles.plan:
-        said += [("plan", tow) for tow in plan.tows if tow not in tows]
-        said += [("plan", plan.seasons)] if plan.seasons and has_none(*plan.seasons) else []
+        idle += [("plan", tow_id) for tow_id in plan.tows if tow_id not in tows]
+        if plan.seasons and not has_season(plan.seasons):
+            idle.append(("plan", plan.seasons))
     text = say("[[{table}]] is for {what}, and no tow list has that: is it mistyped?")
-    return [
-        Fault(PROFILE_FILE, None, None, "idle_setting", say(text, table=table, what=str(what)))
-        for table, what in said
-    ]
+    faults = []
+    for table, what in idle:
+        said = say(text, table=table, what=str(what))
+        faults.append(Fault(path=PROFILE_FILE, reason_code="idle_setting", message=said))
+    return faults

@@ -74,7 +74,11 @@ class Run:
 
         Of every tenth sample: only gross faults are looked for, and all take long.
         """
-        return {key: _median(values[::10]) for key, values in self.channels.items()}
+        medians = {}
+        for key, values in self.channels.items():
+            some = values[::10]
+            medians[key] = float(np.nanmedian(some)) if np.isfinite(some).any() else np.nan
+        return medians
 
     def typical(self, channel: str) -> tuple[float, float, float]:
         """Return the median, the lowest and the highest value of a channel."""
@@ -91,10 +95,6 @@ class Run:
         rate = round(self.rate_hz)
         seconds = values[: len(values) // rate * rate].reshape(-1, rate)
         return np.asarray(seconds.mean(axis=1, dtype=np.float64))
-
-
-def _median(values: Array) -> float:
-    return float(np.nanmedian(values)) if np.isfinite(values).any() else np.nan
 
 
 @dataclass
@@ -114,6 +114,14 @@ class Judgement:
     wanted: int = 0
     runs: list[Run] = field(default_factory=list)
     faults: list[Fault] = field(default_factory=list)
+
+    def has_channels(self, *channels: str) -> bool:
+        """Whether all runs have some channels."""
+        return all(run.channels.keys() >= set(channels) for run in self.runs)
+
+    def typical_median(self, channel: str) -> float:
+        """Return the median over the runs of their median of a channel."""
+        return float(np.median([run.medians[channel] for run in self.runs]))
 
     def lose(
         self,
@@ -151,8 +159,17 @@ class Judgement:
         lost_s: float,
     ) -> None:
         path, line = self.place(row)
-        tow_id = self.tow["tow_id"]
-        self.faults.append(Fault(path, tow_id, line, reason_code, message, lost, run, lost_s))
+        fault = Fault(
+            path=path,
+            tow_id=self.tow["tow_id"],
+            line=line,
+            reason_code=reason_code,
+            message=message,
+            lost=lost,
+            run=run,
+            lost_s=lost_s,
+        )
+        self.faults.append(fault)
 
     def lost(self, reason_code: str, message: Sentence, row: int = HEADER) -> DefectiveFileError:
         """Return the error for a tow that is lost whole."""

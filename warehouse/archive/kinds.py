@@ -19,6 +19,9 @@ from warehouse.archive.columns import Column
 REMARK: Final = "remark"
 """A column that is not read: whatever is in it."""
 
+READ_APART: Final = frozenset({"file", "second_file", "use_runs", REMARK})
+"""Columns that the table of a list does not hold: they become other columns or runs."""
+
 
 @dataclass(frozen=True)
 class ListKind:
@@ -43,6 +46,25 @@ class ListKind:
     about: str = ""
     spare: frozenset[str] = frozenset()
 
+    def __post_init__(self) -> None:
+        """Refuse a column whose values the table could not hold: they would be lost.
+
+        Raises:
+            LookupError: a column is neither in `table` nor in `READ_APART`.
+        """
+        known = {*self.table.column_names(), *READ_APART}
+        lost = [column.key for column in self.columns if column.key not in known]
+        if lost:
+            raise LookupError(
+                f"the table {self.table.__name__} has no column {', '.join(lost)}: declare it in "
+                "`pipeline/tables/`, or name it in `READ_APART` if something else is made of it."
+            )
+
+    @property
+    def keys(self) -> list[str]:
+        """The keys of its columns, in their order."""
+        return [column.key for column in self.columns]
+
     def header(self, key: str) -> str:
         """Return the header of a column with its unit."""
         return next(column.named for column in self.columns if column.key == key)
@@ -65,80 +87,84 @@ _SIZES: Final = (
 """Sizes of a boat, as it is listed and as it was towed."""
 _BOAT: Final = Column("fsn_no", "fsn_nr")
 _CREW: Final = (Column("rowers", "roeiers"), Column("crew_class", "klasse"))
-_TOW_RUN: Final = (Column("tow_id", "sleep_id"), Column("run", "run"))
-_SECONDS: Final = (
+_SPEED: Final = Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s")
+_THWART: Final = Column("empty_thwart", "lege doft", required=False)
+_RUN_SECONDS: Final = (
+    Column("tow_id", "sleep_id"),
+    Column("run", "run"),
     Column("start_s", "van", "duration", "s"),
     Column("end_s", "tot", "duration", "s"),
 )
-_SPEED: Final = Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s")
-_THWART: Final = Column("empty_thwart", "lege doft", required=False)
+"""Some seconds of a run of a tow."""
 
+_NAMES_OF_BOAT: Final = (
+    _BOAT,
+    Column("ht_no", "ht_nr", required=False),
+    Column("name", "sloep"),
+    Column("boat_type", "type", required=False),
+)
+_OPTIONAL_CREW: Final = (
+    Column("rowers", "roeiers", required=False),
+    Column("crew_class", "klasse", required=False),
+)
 BOATS: Final = ListKind(
-    "sloepregister",
-    "sloependata()",
-    "bad_boat_row",
-    ListedBoats,
-    (
-        _BOAT,
-        Column("ht_no", "ht_nr", required=False),
-        Column("name", "sloep"),
-        Column("boat_type", "type", required=False),
-        *_SIZES,
-        Column("rowers", "roeiers", required=False),
-        Column("crew_class", "klasse", required=False),
-    ),
+    folder="sloepregister",
+    pattern="sloependata()",
+    reason_code="bad_boat_row",
+    table=ListedBoats,
+    columns=_NAMES_OF_BOAT + _SIZES + _OPTIONAL_CREW,
     about="fsn_no",
     spare=frozenset({"ht_no", "boat_type"}),
 )
+_TOW: Final = (
+    Column("tow_id", "sleep_id"),
+    Column("tow_date", "datum"),
+    _BOAT,
+    Column("file", "meetfile"),
+    Column("second_file", "meetfile2", required=False),
+)
+_DAY_OF_TOW: Final = (
+    _mass("weight_after_kg", "gewicht na"),
+    _mass("crew_weight_kg", "bemanning"),
+    Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
+    Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
+    Column("use_runs", "gebruik runs", required=False),
+    Column("altered", "verbouwd", required=False),
+    Column("sample_rate_hz", "meetfrequentie", "rate", "Hz", required=False),
+    _THWART,
+    _length("freeboard_lowest_m", "vrijboord laagst"),
+    _length("freeboard_bow_m", "vrijboord boeg"),
+    _length("freeboard_stern_m", "vrijboord achter"),
+    Column(REMARK, "opmerking", required=False),
+)
 TOWS: Final = ListKind(
-    "sleeplijsten",
-    "sleeplijst_([0-9]{4})",
-    "bad_list_row",
-    ListedTows,
-    (
-        Column("tow_id", "sleep_id"),
-        Column("tow_date", "datum"),
-        _BOAT,
-        Column("file", "meetfile"),
-        Column("second_file", "meetfile2", required=False),
-        *_CREW,
-        _SPEED,
-        *_SIZES,
-        _mass("weight_after_kg", "gewicht na"),
-        _mass("crew_weight_kg", "bemanning"),
-        Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
-        Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
-        Column("use_runs", "gebruik runs", required=False),
-        Column("altered", "verbouwd", required=False),
-        Column("sample_rate_hz", "meetfrequentie", "rate", "Hz", required=False),
-        _THWART,
-        _length("freeboard_lowest_m", "vrijboord laagst"),
-        _length("freeboard_bow_m", "vrijboord boeg"),
-        _length("freeboard_stern_m", "vrijboord achter"),
-        Column(REMARK, "opmerking", required=False),
-    ),
+    folder="sleeplijsten",
+    pattern="sleeplijst_([0-9]{4})",
+    reason_code="bad_list_row",
+    table=ListedTows,
+    columns=_TOW + _CREW + (_SPEED,) + _SIZES + _DAY_OF_TOW,
     about="tow_id",
     spare=frozenset(
         {
-            *(size.key for size in _SIZES),
+            "waterline_length_m", "beam_m", "bow_height_m", "weight_kg",
             "weight_after_kg", "crew_weight_kg", "water_temperature_c",
             "freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m",
         }
     ),
 )  # fmt: skip
 WINDOWS: Final = ListKind(
-    "sleeplijsten",
-    "vensters_([0-9]{4})",
-    "bad_window_row",
-    WrittenWindows,
-    (*_TOW_RUN, *_SECONDS, Column("reason", "reden", required=False)),
+    folder="sleeplijsten",
+    pattern="vensters_([0-9]{4})",
+    reason_code="bad_window_row",
+    table=WrittenWindows,
+    columns=_RUN_SECONDS + (Column("reason", "reden", required=False),),
 )
 FORCE_CHECKS: Final = ListKind(
-    "sleeplijsten",
-    "krachtijkingen_([0-9]{4})",
-    "bad_instrument_row",
-    ListedForceChecks,
-    (
+    folder="sleeplijsten",
+    pattern="krachtijkingen_([0-9]{4})",
+    reason_code="bad_instrument_row",
+    table=ListedForceChecks,
+    columns=(
         Column("day", "datum"),
         Column("weight_kg", "gewicht", "mass", "kg"),
         Column("reading_n", "aflezing", "force", "N"),
@@ -147,19 +173,19 @@ FORCE_CHECKS: Final = ListKind(
 """The load cell read while a known weight hung on it, daily or more often (Sleepproef, R. Pot 2017,
 "Krachtopnemer")."""
 LAMPS: Final = ListKind(
-    "sleeplijsten",
-    "lampjes_([0-9]{4})",
-    "bad_instrument_row",
-    ListedLamps,
-    (*_TOW_RUN, *_SECONDS),
+    folder="sleeplijsten",
+    pattern="lampjes_([0-9]{4})",
+    reason_code="bad_instrument_row",
+    table=ListedLamps,
+    columns=_RUN_SECONDS,
 )
 """When a lamp beside the beacon burned because the tow line was not square ("Recht sturen")."""
 ACCEPTANCES: Final = ListKind(
-    "sleeplijsten",
-    "beoordelingen()",
-    "bad_acceptance_row",
-    ListedAcceptances,
-    (
+    folder="sleeplijsten",
+    pattern="beoordelingen()",
+    reason_code="bad_acceptance_row",
+    table=ListedAcceptances,
+    columns=(
         Column("tow_id", "sleep_id"),
         Column("accepted_on", "datum"),
         Column("accepted_by", "goedgekeurd door"),
@@ -169,38 +195,38 @@ ACCEPTANCES: Final = ListKind(
     ),
 )
 """Who let a boat go after the first assessment: it waits for that ("Eerste beoordeling")."""
+_CURVE: Final = (
+    Column("a_kg_m", "A"),
+    Column("b_m_s", "B", "speed", "m/s"),
+    Column("cw_kg_m", "Cw"),
+    _SPEED,
+    Column("tow_date", "sleepdatum"),
+    _THWART,
+)
 REGISTERS: Final = ListKind(
-    "sloepregister",
-    "sloepregister_([0-9]{4})",
-    "bad_register_row",
-    PrintedLines,
-    (
-        _BOAT,
-        *_CREW,
-        Column("a_kg_m", "A"),
-        Column("b_m_s", "B", "speed", "m/s"),
-        Column("cw_kg_m", "Cw"),
-        _SPEED,
-        Column("tow_date", "sleepdatum"),
-        _THWART,
-    ),
+    folder="sloepregister",
+    pattern="sloepregister_([0-9]{4})",
+    reason_code="bad_register_row",
+    table=PrintedLines,
+    columns=(_BOAT,) + _CREW + _CURVE,
+)
+_RACE: Final = (
+    Column("race", "wedstrijd"),
+    Column("race_date", "datum"),
+    Column("distance_m", "afstand", "length", "km"),
+)
+_RESULT: Final = (
+    Column("rowing_time_s", "roeitijd"),
+    Column("stream_m", "stroom", "length", "km", required=False),
+    Column("penalty_w", "straf", "power", "W", required=False),
+    _THWART,
 )
 RACES: Final = ListKind(
-    "wedstrijden",
-    ".+_([0-9]{4})",
-    "bad_race_row",
-    ListedRaces,
-    (
-        Column("race", "wedstrijd"),
-        Column("race_date", "datum"),
-        Column("distance_m", "afstand", "length", "km"),
-        _BOAT,
-        *_CREW,
-        Column("rowing_time_s", "roeitijd"),
-        Column("stream_m", "stroom", "length", "km", required=False),
-        Column("penalty_w", "straf", "power", "W", required=False),
-        _THWART,
-    ),
+    folder="wedstrijden",
+    pattern=".+_([0-9]{4})",
+    reason_code="bad_race_row",
+    table=ListedRaces,
+    columns=_RACE + (_BOAT,) + _CREW + _RESULT,
 )
 LIST_KINDS: Final = (
     BOATS, TOWS, WINDOWS, FORCE_CHECKS, LAMPS, ACCEPTANCES, REGISTERS, RACES,

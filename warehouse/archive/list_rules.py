@@ -98,10 +98,10 @@ def read_boats(files: Iterable[ArchiveFile], profiles: Profiles) -> Boats:
     sound = rows.frame.filter(~pl.col("fsn_no").is_in(list(rows.lost))).with_columns(
         boat_type=pl.when(~is_no_type).then("boat_type")
     )
-    crews = ("rowers", "crew_class")
-    of_boat = [name for name in ListedBoats.column_names() if name not in {"fsn_no", *crews}]
-    last = [pl.col(name).drop_nulls().last().over("fsn_no") for name in of_boat]
-    listed = sound.with_columns(*last).select(ListedBoats.column_names())
+    of_boat = pl.exclude("fsn_no", "rowers", "crew_class")
+    listed = sound.select(ListedBoats.column_names()).with_columns(
+        of_boat.drop_nulls().last().over("fsn_no")
+    )
     return Boats(ListedBoats.cast(listed.unique(maintain_order=True)), rows.lost, rows.faults)
 
 
@@ -113,17 +113,20 @@ def name_boats(rows: Rows, boats: Boats) -> None:
     known = known.unique(maintain_order=True).filter(pl.col("folded") != "")
     by_name = known.group_by("folded", maintain_order=True).agg("number")
     numbers: dict[str, list[str]] = dict(by_name.iter_rows())
-    listed = {*boats.listed["fsn_no"], *boats.lost}
-    named = {
-        text: numbers[fold_word(text)]
-        for text in rows.frame["fsn_no"].drop_nulls().unique()
-        if text not in listed and fold_word(text) in numbers
-    }
-    several = [text for text, found in named.items() if len(found) > 1]
+    listed = boats.lost.keys() | set(boats.listed["fsn_no"])
+    number_of: dict[str, str] = {}
+    several: list[str] = []
+    for written in rows.frame["fsn_no"].drop_nulls().unique():
+        found = numbers.get(fold_word(written), [])
+        if written in listed or not found:
+            continue
+        if len(found) > 1:
+            several.append(written)
+        else:
+            number_of[written] = found[0]
     text = say("'{boat}' is the name of several boats: give the number.")
     rows.drop(pl.col("fsn_no").is_in(several), text, "unknown_boat", boat=pl.col("fsn_no"))
-    only = {text: found[0] for text, found in named.items() if len(found) == 1}
-    rows.frame = rows.frame.with_columns(pl.col("fsn_no").replace(only))
+    rows.frame = rows.frame.with_columns(pl.col("fsn_no").replace(number_of))
 
 
 def read_window_lists(
@@ -224,11 +227,19 @@ def find_windows_outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> li
     text = say(
         "the window of run {run} of tow {tow} ends at {end} s, but the run lasts {seconds} s."
     )
-    facts = pl.struct("run", "seconds", tow="tow_id", end="end_s")
-    return [
-        Fault(path, None, line, "window_outside_run", say_at_line(line, say(text, **of)))
-        for path, line, of in beyond.select("path", "line", facts).iter_rows()
-    ]
+    faults = []
+    for row in beyond.iter_rows(named=True):
+        said = say(
+            text, run=row["run"], tow=row["tow_id"], end=row["end_s"], seconds=row["seconds"]
+        )
+        fault = Fault(
+            path=row["path"],
+            line=row["line"],
+            reason_code="window_outside_run",
+            message=say_at_line(row["line"], said),
+        )
+        faults.append(fault)
+    return faults
 
 
 def read_within_border(
@@ -359,12 +370,15 @@ def _check_races(rows: Rows) -> None:
         "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
         "{high:g} can be right."
     )
-    facts: dict[str, Any] = {
-        "cell": cell("rowing_time_s"),
-        "km": through_water_m / 1000,
-        "speed": speed,
-    }
-    rows.drop(~speed.is_between(low, high), text, **facts, low=low, high=high)
+    rows.drop(
+        ~speed.is_between(low, high),
+        text,
+        cell=cell("rowing_time_s"),
+        km=through_water_m / 1000,
+        speed=speed,
+        low=low,
+        high=high,
+    )
     of_crew = ("race", "race_date", "fsn_no", "rowers", "crew_class")
     text = say("{of} is also on line {line} of {other}, and the rows differ: neither counts.")
     rows.drop_repeated(of_crew, text)
@@ -373,20 +387,24 @@ def _check_races(rows: Rows) -> None:
 def _check_registers(rows: Rows) -> None:
     """Add whether a line has a valid curve, and set aside lines that contradict their curve."""
     rows.drop_copies()
-    has_curve = ~pl.col("cw_kg_m").is_between(*NEVER_TOWED_CW).fill_null(value=False)
+    lowest_never_towed, highest_never_towed = NEVER_TOWED_CW
+    is_never_towed = pl.col("cw_kg_m").is_between(lowest_never_towed, highest_never_towed)
+    has_curve = ~is_never_towed.fill_null(value=False)
     rows.frame = rows.frame.with_columns(has_valid_curve=has_curve)
     for key in _CURVE:
         is_empty = pl.col(key).is_null() & pl.col("has_valid_curve")
         rows.drop(is_empty, say("column '{column}' is empty."), column=key)
     rows.frame = rows.frame.with_columns(
-        *(pl.when("has_valid_curve").then(key).alias(key) for key in _CURVE),
+        pl.when("has_valid_curve").then(pl.col(_CURVE)),
         pl.col("empty_thwart").fill_null(NO_EMPTY_THWART),
     )
     a, b, cw, speed = pl.col("a_kg_m"), pl.col("b_m_s"), pl.col("cw_kg_m"), pl.col(_SPEED_KEY)
-    printed: dict[str, Any] = {key: cell(key) for key in (*_CURVE, _SPEED_KEY)}
+    printed: dict[str, Any] = {key: cell(key) for key in _CURVE + (_SPEED_KEY,)}
     text = say("B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher.")
     rows.drop(b <= speed, text, **printed)
-    half_a, half_b, half_cw = (_half_unit(key) for key in _CURVE)
+    half_a = _half_unit("a_kg_m")
+    half_b = _half_unit("b_m_s")
+    half_cw = _half_unit("cw_kg_m")
     half_speed = _half_unit(_SPEED_KEY)
     slowest = (speed - half_speed) / (b + half_b)
     fastest = pl.min_horizontal((speed + half_speed) / (b - half_b), 0.999)

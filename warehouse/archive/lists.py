@@ -25,8 +25,10 @@ from warehouse.archive.columns import (
     find_columns,
     find_header,
     fold,
+    fold_names,
     fold_word,
     list_unknown_headers,
+    quote_names,
     shorten,
     split_header,
     split_line,
@@ -110,8 +112,7 @@ def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles)
                 header = [profiles.whole_headers.get(fold(cell), cell) for cell in table.header]
                 renamed = table._replace(header=header)
                 places = _find_places(renamed, columns, profiles)
-                _check_known(renamed, columns, places, profiles)
-                _check_shown(renamed, places)
+                _check_columns(renamed, columns, places, profiles)
                 found.add(_parse_rows(renamed, file, kind, places, profiles.meaning))
             except BaseException as error:
                 found.faults.append(fault_from(error, file.path))
@@ -156,7 +157,8 @@ def _split_workbook(
     scores = [count_names(table.header, columns) for table in tables]
     enough = max(scores) / 2
     kept = [table for table, score in zip(tables, scores, strict=True) if score >= enough]
-    kept = kept if max(scores) else kept[:1]
+    if max(scores) == 0:
+        kept = kept[:1]
     named = {table.sheet for table in kept}
     notes = []
     for table, score in zip(tables, scores, strict=True):
@@ -181,7 +183,8 @@ def _split_workbook(
 
 
 def _unread_fault(path: str, line: int, said: Sentence) -> Fault:
-    return Fault(path, None, line, "hidden", say_at_line(line, said), "row")
+    message = say_at_line(line, said)
+    return Fault(path=path, line=line, reason_code="hidden", message=message, lost="row")
 
 
 def _is_text(file: ArchiveFile) -> bool:
@@ -205,11 +208,20 @@ def _read_text_table(text: str, columns: Sequence[Column]) -> Table:
 
 
 def _read_sheet_table(sheet: Sheet, columns: Sequence[Column]) -> Table:
-    lines = ["\t".join(" ".join(cell.split()) for cell in cells) for _, cells in sheet.rows]
+    lines = []
+    for _, cells in sheet.rows:
+        on_one_line = [" ".join(cell.split()) for cell in cells]
+        lines.append("\t".join(on_one_line))
     place, _ = find_header(lines, columns)
     line, header = sheet.rows[place]
     rows = [(number, cells, False) for number, cells in sheet.rows[place + 1 :]]
-    return Table(header, line, _keep_filled_rows(rows), sheet.name, sheet.hidden_columns)
+    return Table(
+        header=header,
+        line=line,
+        rows=_keep_filled_rows(rows),
+        sheet=sheet.name,
+        hidden_columns=sheet.hidden_columns,
+    )
 
 
 def _keep_filled_rows(
@@ -236,19 +248,14 @@ def _find_places(
     try:
         return find_columns(table.header, columns, table.line)
     except DefectiveHeaderError as error:
-        ask = [
-            _ask_header(cell.strip())
-            for cell in table.header
-            if fold(cell) and fold(cell) not in profiles.ignore and not _can_be(cell, columns)
-        ]
+        ask = []
+        for cell in table.header:
+            name, unit = split_header(cell)
+            namesakes = [column for column in columns if name in fold_names([column])]
+            is_column = any(column.scale(unit) is not None for column in namesakes)
+            if fold(cell) and fold(cell) not in profiles.ignore and not is_column:
+                ask.append(_ask_header(cell.strip()))
         raise DefectiveHeaderError(error.reason_code, error.message, error.line, ask) from error
-
-
-def _can_be(cell: str, columns: Iterable[Column]) -> bool:
-    """Return whether a header names a column, with a unit that this can have."""
-    name, unit = split_header(cell)
-    namesakes = [c for c in columns if name in map(fold, (c.header, *c.also))]
-    return any(column.scale(unit) is not None for column in namesakes)
 
 
 def _ask_header(header: str) -> str:
@@ -256,12 +263,10 @@ def _ask_header(header: str) -> str:
     return f'[headers]\n"{quoted}" = "?"'
 
 
-def _check_known(
+def _check_columns(
     table: Table, columns: Iterable[Column], places: Mapping[str, FoundColumn], profiles: Profiles
 ) -> None:
-    """Raise where a column is not known, or one without a name holds something."""
-    others = list_unknown_headers(table.header, places)
-    unknown = [header for header in others if fold(header) not in profiles.ignore]
+    """Raise where a column is not known, or holds something and is hidden or without a name."""
     for index, header in enumerate(table.header):
         if fold(header):
             continue
@@ -274,20 +279,17 @@ def _check_known(
                 )
                 said = say(text, number=index + 1, cell=shorten(cell), line=line)
                 raise DefectiveHeaderError("unknown_column", said, table.line)
+    others = list_unknown_headers(table.header, places)
+    unknown = [header for header in others if fold(header) not in profiles.ignore]
     if unknown:
         text = say(
             "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or "
             "put it there under ignore. Not used yet: {free}."
         )
-        names = ", ".join(f"'{shorten(header)}'" for header in unknown)
         free = ", ".join(column.header for column in columns if column.key not in places) or "-"
-        said = say(text, names=names, free=free)
+        said = say(text, names=quote_names(unknown), free=free)
         ask = [_ask_header(header) for header in unknown]
         raise DefectiveHeaderError("unknown_column", said, table.line, ask)
-
-
-def _check_shown(table: Table, places: Mapping[str, FoundColumn]) -> None:
-    """Raise where a column that is read is hidden, and holds something."""
     for key, place in places.items():
         is_filled = any(row[place.index] for _, row, _ in table.rows if place.index < len(row))
         if place.index in table.hidden_columns and is_filled and key != REMARK:
@@ -307,7 +309,7 @@ def _parse_rows(
 
     Every cell that is wrong leaves a fault; a row is set aside unless the kind can spare the cell.
     """
-    keys = [column.key for column in kind.columns]
+    keys = kind.keys
     frame = _collect_cells(table, places, words, kind)
     needed = []
     for column in kind.columns:
@@ -381,15 +383,14 @@ def _collect_cells(
     last column aside.
     """
     width = len(table.header)
-    keys = [column.key for column in kind.columns]
-    numbers = {column.key for column in kind.columns if _is_number(kind, column.key)}
-    found: dict[str, list[object]] = {
-        name: [] for name in ("line", "is_open", "fields", "too_long", *keys)
-    }
+    numbers = {key for key in kind.keys if _is_number(kind, key)}
+    schema = {"line": pl.Int64, "is_open": pl.Boolean, "fields": pl.Int64, "too_long": pl.String}
+    schema |= dict.fromkeys(kind.keys, pl.String)
+    found: dict[str, list[object]] = {name: [] for name in schema}
     for line, row, is_open in table.rows:
         has_more = any(map(str.strip, row[width:]))
         too_long = ""
-        for key in keys:
+        for key in kind.keys:
             index = places[key].index if key in places else width
             cell = row[index].strip() if index < min(len(row), width) else ""
             if len(cell) > MAX_CELL_CHARACTERS:
@@ -403,8 +404,7 @@ def _collect_cells(
         found["is_open"].append(is_open)
         found["fields"].append(len(row) if has_more else min(len(row), width))
         found["too_long"].append(too_long)
-    schema = {"line": pl.Int64, "is_open": pl.Boolean, "fields": pl.Int64, "too_long": pl.String}
-    return pl.DataFrame(found, schema | dict.fromkeys(keys, pl.String))
+    return pl.DataFrame(found, schema)
 
 
 def _find_decimal_mark(
@@ -414,7 +414,7 @@ def _find_decimal_mark(
 
     Else it is a point; or, in a workbook, unknown, as its numbers are no text.
     """
-    has_comma = cells.select(pl.col(*places).str.contains(r"^[+-]?[0-9]*,[0-9]+$").any())
+    has_comma = cells.select(pl.col(list(places)).str.contains(r"^[+-]?[0-9]*,[0-9]+$").any())
     return "," if any(has_comma.row(0)) else "." if is_text else ""
 
 
@@ -588,8 +588,11 @@ def split_runs(written: str) -> list[str]:
     parts: list[str] = []
     for part in re.split(r"[\s,;]+", written.casefold()):
         match = _RUN_RANGE.fullmatch(part)
-        numbers = range(int(match[2]), min(int(match[3]), MOST_RUNS) + 1) if match else ()
-        parts += [f"{match[1]}{number}" for number in numbers] if match else [part]
+        if match is None:
+            parts.append(part)
+            continue
+        file, first, last = match[1], int(match[2]), min(int(match[3]), MOST_RUNS)
+        parts += [f"{file}{number}" for number in range(first, last + 1)]
     return parts
 
 
@@ -634,14 +637,16 @@ def _parse_run(text: pl.Expr) -> pl.Expr:
 def _parse_rowing_time(text: pl.Expr) -> pl.Expr:
     """Return the seconds of a rowing time such as `2:10:25`."""
     parts = text.str.extract_groups(_TIME).struct
-    hours, minutes, seconds = (parts.field(str(n)).cast(pl.Float64) for n in (1, 2, 3))
+    hours = parts.field("1").cast(pl.Float64)
+    minutes = parts.field("2").cast(pl.Float64)
+    seconds = parts.field("3").cast(pl.Float64)
     total = hours * 3600 + minutes * 60 + seconds
     return pl.when(total > 0).then(total)
 
 
 def _parse_yes_or_no(text: pl.Expr) -> pl.Expr:
     word = text.fill_null("nee").str.to_lowercase()
-    return pl.when(word.is_in([*_YES, *_NO])).then(word.is_in(_YES))
+    return pl.when(word.is_in(_YES + _NO)).then(word.is_in(_YES))
 
 
 def _parse_date(text: pl.Expr) -> pl.Expr:

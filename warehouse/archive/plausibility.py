@@ -5,7 +5,7 @@ samples that cannot be; and the table of `RULES` on each channel of a run.
 """
 
 from collections.abc import Callable, Mapping
-from itertools import combinations, pairwise
+from itertools import combinations
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
@@ -117,7 +117,9 @@ def judge_samples(
     judgement.check_left()
     _leave_out_no_wind(judgement)
     _check_whole_tow(judgement)
-    usual_kg_m = _estimate_resistance_kg_m(judgement.runs)
+    # The median over runs, which one faulty run does not move.
+    each_kg_m = [run.medians["force"] / run.intended_m_s**2 for run in judgement.runs]
+    usual_kg_m = abs(float(np.nanmedian(each_kg_m))) if np.isfinite(each_kg_m).any() else np.nan
     for run in judgement.runs:
         leave_out(judgement, run, usual_kg_m)
         if run in judgement.runs:
@@ -133,33 +135,47 @@ def judge_samples(
 def _select_runs(judgement: Judgement, samples: pl.DataFrame, runs: pl.DataFrame) -> None:
     """Find the selected runs; each that is not there leaves a fault."""
     tow, number = judgement.tow, samples["run"].to_numpy()
-    bounds = [*find_run_starts(number).tolist(), len(number)]
-    rows = {int(number[start]): slice(start, end) for start, end in pairwise(bounds)}
-    channels = {
-        key: samples[name].to_numpy()
-        for key, name in CHANNELS.items()
-        if samples[name].null_count() == 0
-    }
+    starts = find_run_starts(number)
+    ends = np.append(starts[1:], len(number))
+    rows = {}
+    for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
+        rows[int(number[start])] = slice(start, end)
     selected = runs.filter((pl.col("tow_id") == tow["tow_id"]) & pl.col("selected")).sort("run")
     judgement.wanted = selected.height
     for run, planned_s, ratio in selected["run", "planned_s", "target_speed_ratio"].iter_rows():
         if run not in rows:
-            judgement.faults.append(_missing_run_fault(run, tow, sorted(rows)))
+            judgement.faults.append(_describe_missing_run(run, tow, sorted(rows)))
             continue
-        own = {key: values[rows[run]] for key, values in channels.items()}
-        intended_m_s = tow["declared_speed_m_s"] * ratio
-        facts = rows[run].start, tow["sample_rate_hz"], intended_m_s, planned_s, own
-        judgement.runs.append(Run(run, *facts))
+        channels = {}
+        for key, name in CHANNELS.items():
+            if samples[name].null_count() == 0:
+                channels[key] = samples[name][rows[run]].to_numpy()
+        judgement.runs.append(
+            Run(
+                number=run,
+                start=rows[run].start,
+                rate_hz=tow["sample_rate_hz"],
+                intended_m_s=tow["declared_speed_m_s"] * ratio,
+                planned_s=planned_s,
+                channels=channels,
+            )
+        )
 
 
-def _missing_run_fault(run: int, tow: Row, present: list[int]) -> Fault:
+def _describe_missing_run(run: int, tow: Row, present: list[int]) -> Fault:
+    """Return the fault of a run that is not in its file, with the runs that are."""
     in_second = run > SECOND_FILE_OFFSET
     offset = SECOND_FILE_OFFSET if in_second else 0
     there = [str(n - offset) for n in present if (n > SECOND_FILE_OFFSET) == in_second]
     text = say("Run {} is to be used but is not in the file; it holds runs {}.")
-    message = say(text, run - offset, ", ".join(there))
-    path = tow["second_path" if in_second else "samples_path"]
-    return Fault(path, tow["tow_id"], None, "missing_run", message, "run", run)
+    return Fault(
+        path=tow["second_path" if in_second else "samples_path"],
+        tow_id=tow["tow_id"],
+        reason_code="missing_run",
+        message=say(text, run - offset, ", ".join(there)),
+        lost="run",
+        run=run,
+    )
 
 
 def _check_length(judgement: Judgement) -> None:
@@ -237,7 +253,7 @@ def _leave_out_no_wind(judgement: Judgement) -> None:
     text = say("column '{column}' {} in all runs, which is not wind; the tow goes on without wind.")
     first = describe_value(judgement.runs[0].channels["wind_speed"][0])
     message = say(text, first, column=COLUMN_OF["wind_speed"])
-    judgement.lose_of_all("implausible_value", message, *EXTREMES)
+    judgement.lose_of_all("implausible_value", message, "wind_speed", "wind_angle")
 
 
 def _check_whole_tow(judgement: Judgement) -> None:
@@ -247,7 +263,7 @@ def _check_whole_tow(judgement: Judgement) -> None:
     move.
     """
     runs = judgement.runs
-    force_n = float(np.median([run.medians["force"] for run in runs]))
+    force_n = judgement.typical_median("force")
     intended_m_s = float(np.median([run.intended_m_s for run in runs]))
     low, high = USUAL["force"].times(intended_m_s, np.nan)
     if low <= -force_n <= high:
@@ -256,23 +272,26 @@ def _check_whole_tow(judgement: Judgement) -> None:
     _check_exchanged(judgement, intended_m_s)
     _check_held_as_a_fix(judgement)
     _check_against_plan(judgement)
-    ratio = float(np.median([run.medians["log1"] for run in runs])) / intended_m_s
-    if KM_H_RATIO[0] <= ratio <= KM_H_RATIO[1]:
+    ratio = judgement.typical_median("log1") / intended_m_s
+    least, most = KM_H_RATIO
+    if least <= ratio <= most:
         text = say(
             "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
             "looks like km/h under another header."
         )
-        raise judgement.lost("speed_unit", say(text, ratio, *KM_H_RATIO))
+        raise judgement.lost("speed_unit", say(text, ratio, least, most))
 
 
 def _check_held_as_a_fix(judgement: Judgement) -> None:
     """Raise where another channel holds a fix a second, and the GPS moves as a log does."""
-    runs = judgement.runs
+
+    def typical_hz(channel: str) -> float:
+        return float(np.median([run.changes_hz(channel) for run in judgement.runs]))
+
     for key in ("log1", "log2", "wind_speed"):
-        if not all({key, "gps"} <= run.channels.keys() for run in runs):
+        if not judgement.has_channels(key, "gps"):
             continue
-        other_hz = float(np.median([run.changes_hz(key) for run in runs]))
-        gps_hz = float(np.median([run.changes_hz("gps") for run in runs]))
+        other_hz, gps_hz = typical_hz(key), typical_hz("gps")
         least, most = HELD_AS_A_FIX_HZ
         if gps_hz > MOVES_AS_A_LOG_HZ and least < other_hz < most:
             text = say(
@@ -288,7 +307,7 @@ def _check_against_plan(judgement: Judgement) -> None:
     A log follows the intended speeds of the runs, a force their square; wind follows neither.
     """
     for key, wind, power, most in FOLLOWS_PLAN:
-        if not all({key, wind} <= run.channels.keys() for run in judgement.runs):
+        if not judgement.has_channels(key, wind):
             continue
         own = _measure_spread(judgement.runs, key, power)
         other = _measure_spread(judgement.runs, wind, power)
@@ -310,9 +329,10 @@ def _measure_spread(runs: list[Run], key: str, power: int) -> float:
 def _check_exchanged(judgement: Judgement, intended_m_s: float) -> None:
     """Raise where two channels can be right only the other way round."""
     runs = judgement.runs
-    typical = {
-        key: np.median([run.typical(key) for run in runs], axis=0) for key in runs[0].channels
-    }
+    typical = {}
+    for key in runs[0].channels:
+        of_runs = [run.typical(key) for run in runs]
+        typical[key] = np.median(of_runs, axis=0)
     wrong = _find_implausible(typical, intended_m_s)
     for one, other in combinations(typical, 2):
         exchanged = typical | {one: typical[other], other: typical[one]}
@@ -323,7 +343,7 @@ def _check_exchanged(judgement: Judgement, intended_m_s: float) -> None:
             raise judgement.lost("swapped_columns", said)
 
 
-def _find_implausible(typical: Mapping[str, Array], intended_m_s: float) -> set[str]:
+def _find_implausible(typical: Mapping[str, NDArray[np.floating]], intended_m_s: float) -> set[str]:
     """Return the channels of which median, lowest and highest cannot be what their header says."""
     wrong = set()
     for key, (median, lowest, highest) in typical.items():
@@ -338,12 +358,6 @@ def _find_implausible(typical: Mapping[str, Array], intended_m_s: float) -> set[
 # Samples
 
 
-def _estimate_resistance_kg_m(runs: list[Run]) -> float:
-    """Return the median over runs of force / speed squared, which one faulty run does not move."""
-    each = [run.medians["force"] / run.intended_m_s**2 for run in runs]
-    return abs(float(np.nanmedian(each))) if np.isfinite(each).any() else np.nan
-
-
 def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
     """Leave out the samples of a run that cannot be, and the run where these are too many.
 
@@ -353,11 +367,15 @@ def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
         usual_kg_m: usual force over speed squared.
     """
     usual_n = usual_kg_m * run.intended_m_s**2
-    wrong = {key: _wrong(run, key, usual_n) for key in run.channels}
-    needed = np.logical_or.reduce([mask for key, mask in wrong.items() if key not in SPARE])
+    wrong = {key: _find_wrong(run, key, usual_n) for key in run.channels}
+    needed = np.zeros(len(run.channels["log1"]), dtype=bool)
+    no_row = ~needed
+    for key, values in run.channels.items():
+        no_row &= np.isnan(values)
+        if key not in SPARE:
+            needed |= wrong[key]
     most = LEFT_OUT_S * run.rate_hz
     cost: Cost = "run" if needed.sum() > most else "seconds"
-    no_row = np.logical_and.reduce([np.isnan(values) for values in run.channels.values()])
     if no_row.any():
         seconds = float(no_row.sum()) / run.rate_hz
         what = say("rows lack fields, or their time cannot be read, for {:.3g} s in all", seconds)
@@ -372,11 +390,12 @@ def leave_out(judgement: Judgement, run: Run, usual_kg_m: float) -> None:
         what = say(text, describe_value(values[row]), seconds, column=COLUMN_OF[key])
         is_gone = key in SPARE and count > most
         of_channel: Cost = "column" if is_gone else cost
-        judgement.lose(run, _reason(run, key, row), what, of_channel, row, seconds)
+        reason_code = _find_reason_code(run, key, row)
+        judgement.lose(run, reason_code, what, of_channel, row, seconds)
         run.channels[key] = np.where(own | is_gone, np.float32(np.nan), values)
 
 
-def _reason(run: Run, key: str, row: int) -> str:
+def _find_reason_code(run: Run, key: str, row: int) -> str:
     """Return the reason code of a channel, by the first of its wrong samples."""
     value = run.channels[key][row]
     if not np.isfinite(value):
@@ -387,35 +406,37 @@ def _reason(run: Run, key: str, row: int) -> str:
     return "negative_force" if key == "force" and pushes <= value < 0 else "implausible_value"
 
 
-def _wrong(run: Run, key: str, usual_n: float) -> BoolArray:
+def _find_wrong(run: Run, key: str, usual_n: float) -> BoolArray:
     """Return which samples of a channel are no number, have dropped out or cannot be."""
     values = run.channels[key]
     if key in SPEEDS:
-        return _wrong_speed(values, run.medians[key], run.rate_hz, SPIKE_RATIO[key])
+        return _find_wrong_speeds(values, run.medians[key], run.rate_hz, SPIKE_RATIO[key])
     if key == "force":
-        return _wrong_force(run, values, usual_n)
+        return _find_wrong_forces(run, values, usual_n)
     least, most = EXTREMES[key]
     if key == "wind_speed":
         most = min(most, GUST_RATIO * abs(run.medians[key]) + GUST_M_S)
-    return _outside(values, least, most)
+    return ~_is_between(values, least, most)
 
 
-def _outside(values: Array, lowest: float, highest: float) -> BoolArray:
-    """Return which samples are not between two limits, or no number."""
-    return np.asarray(~((values >= lowest) & (values <= highest)))
+def _is_between(values: Array, lowest: float, highest: float) -> BoolArray:
+    """Return which samples are between two limits; one that is no number is not."""
+    return np.asarray((values >= lowest) & (values <= highest))
 
 
-def _wrong_speed(values: Array, median: float, rate_hz: float, spike_ratio: float) -> BoolArray:
-    far = spike_ratio * abs(median)
-    near = (values > DROPOUT_M_S) & (np.abs(values - median) <= far)
-    if near.all():
+def _find_wrong_speeds(
+    values: Array, median: float, rate_hz: float, spike_ratio: float
+) -> BoolArray:
+    """Return which samples of a speed have dropped out, or jump away from the speed around them."""
+    is_there = values > DROPOUT_M_S
+    is_near_median = is_there & (np.abs(values - median) <= spike_ratio * abs(median))
+    if is_near_median.all():
         return np.zeros(len(values), dtype=bool)
-    around = _around(values, round(rate_hz))
-    steady = np.abs(values - around) <= spike_ratio * around
-    return np.asarray(~((values > DROPOUT_M_S) & steady))
+    around = _smooth_speed(values, round(rate_hz))
+    return np.asarray(~(is_there & (np.abs(values - around) <= spike_ratio * around)))
 
 
-def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
+def _smooth_speed(values: Array, rate_hz: int) -> NDArray[np.float64]:
     """Return the speed around each sample, which short faults do not move; 0 without numbers."""
     length = max(len(values) // rate_hz, 1)
     second = np.minimum(np.arange(len(values)) // rate_hz, length - 1)
@@ -430,9 +451,10 @@ def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
     return np.asarray(each[second], dtype=np.float64)
 
 
-def _wrong_force(run: Run, values: Array, usual_n: float) -> BoolArray:
-    low, high = FORCE_SPIKE_RATIO[0] * usual_n, FORCE_SPIKE_RATIO[1] * usual_n
-    wrong = _outside(values, low, high)
+def _find_wrong_forces(run: Run, values: Array, usual_n: float) -> BoolArray:
+    """Return which samples of the force are spikes, dead or of a second with a negative mean."""
+    least, most = FORCE_SPIKE_RATIO
+    wrong = ~_is_between(values, least * usual_n, most * usual_n)
     near_zero = FORCE_DEAD_RATIO * usual_n
     if (np.abs(values) <= near_zero).any():
         starts, lengths = find_stretches(values[1:] != values[:-1])

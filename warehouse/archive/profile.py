@@ -3,7 +3,7 @@
 import datetime as dt
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from functools import cached_property, reduce
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Final, Literal, Self
 
@@ -89,9 +89,16 @@ class SeasonProfile:
     groups: tuple[str, ...] = ()
     skip_below_header: int = 0
 
+    def find_header(self, key: str) -> str | None:
+        """Return the header of a column without its unit; None for one that is not looked for."""
+        return next((column.header for column in self.columns if column.key == key), None)
+
     def make_run_optional(self) -> "SeasonProfile":
         """Return the profile of files that need no column `run`."""
-        columns = (replace(c, required=c.required and c.key != "run") for c in self.columns)
+        columns = [
+            replace(column, required=False) if column.key == "run" else column
+            for column in self.columns
+        ]
         return replace(self, columns=tuple(columns))
 
     def leave_out_run(self) -> "SeasonProfile":
@@ -191,7 +198,7 @@ class _ProfileTable(_Strict):
                     raise ValueError(f"season {season} has two values for {name}.{twice[0]}")
                 values[name] = mine | theirs
             elif isinstance(mine, list) and name != "groups":
-                values[name] = list(dict.fromkeys([*mine, *theirs]))
+                values[name] = list(dict.fromkeys(mine + theirs))
             elif mine != theirs:
                 raise ValueError(f"season {season} has two values for {name}")
         return _ProfileTable.model_construct(**values)
@@ -202,7 +209,7 @@ class _ProfileTable(_Strict):
         return replace(
             column,
             header=self.columns.get(key, column.header),
-            also=(*column.also, column.header),
+            also=column.also + (column.header,),
             unit=self.units.get(key, column.unit),
             reversed=key in self.reversed,
             is_unit_declared=key in self.units,
@@ -225,7 +232,7 @@ class Plan(_Strict):
     targets: Annotated[
         list[Annotated[float, Field(ge=0.3, le=2.0, strict=False)]],
         Field(min_length=FEWEST_RUNS, max_length=MOST_RUNS),
-    ] = [*TARGET_SPEED_RATIOS, *TARGET_SPEED_RATIOS]
+    ] = list(TARGET_SPEED_RATIOS + TARGET_SPEED_RATIOS)
     directions: _Directions = [OUT, OUT, OUT, BACK, BACK, BACK]
     seconds: Annotated[float, Field(ge=5, le=600)] = RUN_SECONDS
     second_directions: _Directions | None = None
@@ -303,11 +310,15 @@ class Profiles(_Strict):
 
     def rename_columns(self, columns: Iterable[Column]) -> tuple[Column, ...]:
         """Return the columns of a list with the other names that they have in this archive."""
-        own: dict[str, tuple[str, ...]] = {}
+        names_of: dict[str, list[str]] = {}
         for name, meant in self.headers.items():
-            key = split_header(meant)[0]
-            own[key] = (*own.get(key, ()), name)
-        return tuple(replace(c, also=(*c.also, *own.get(fold(c.header), ()))) for c in columns)
+            header, _ = split_header(meant)
+            names_of.setdefault(header, []).append(name)
+        renamed = []
+        for column in columns:
+            own = names_of.get(fold(column.header), [])
+            renamed.append(replace(column, also=column.also + tuple(own)))
+        return tuple(renamed)
 
     @cached_property
     def _season_profiles(self) -> dict[int, SeasonProfile]:
@@ -320,14 +331,17 @@ class Profiles(_Strict):
             for given in self.profile:
                 if given.seasons[0] <= season <= given.seasons[1]:
                     table = table.merge(given, season)
-            absent = {key for name in table.absent for key in MAY_BE_ABSENT[name]}
+            absent: set[str] = set()
+            for name in table.absent:
+                absent.update(MAY_BE_ABSENT[name])
+            columns = [table.apply_to(one) for one in SAMPLE_COLUMNS if one.key not in absent]
             self._season_profiles[season] = SeasonProfile(
                 season=season,
-                columns=tuple(table.apply_to(c) for c in SAMPLE_COLUMNS if c.key not in absent),
+                columns=tuple(columns),
                 sample_rate_hz=table.sample_rate_hz,
                 absent=tuple(sorted(table.absent)),
                 wind_zero_deg=table.wind_zero_deg,
-                ignore=(*self.ignore, *table.ignore),
+                ignore=tuple(self.ignore + table.ignore),
                 hold=tuple(table.hold),
                 runs=table.runs,
                 run_files=table.run_files,
@@ -338,22 +352,27 @@ class Profiles(_Strict):
 
     def find_plan(self, tow_id: str, season: int) -> Plan:
         """Return the plan of a tow: its own, that of its season, or the standard."""
-        own = (plan for plan in self.plan if tow_id in plan.tows)
-        of_season = (
-            plan
-            for plan in self.plan
-            if plan.seasons and plan.seasons[0] <= season <= plan.seasons[1]
-        )
-        return next(own, None) or next(of_season, STANDARD)
+        for plan in self.plan:
+            if tow_id in plan.tows:
+                return plan
+        for plan in self.plan:
+            if plan.seasons and plan.seasons[0] <= season <= plan.seasons[1]:
+                return plan
+        return STANDARD
 
     def find_reason_set_aside(self, day: dt.date) -> str | None:
         """Return why a day is set aside; None if it is not."""
-        return next((entry.reason for entry in self.set_aside if entry.date == day), None)
+        for entry in self.set_aside:
+            if entry.date == day:
+                return entry.reason
+        return None
 
     def count_log_changes(self, log: str, day: dt.date) -> int:
         """Return how often a log had been replaced in its season up to a day."""
-        replaced = (entry.date for entry in self.log_replaced if entry.log == log)
-        return sum(dt.date(day.year, 1, 1) <= date <= day for date in replaced)
+        first_day = dt.date(day.year, 1, 1)
+        return sum(
+            entry.log == log and first_day <= entry.date <= day for entry in self.log_replaced
+        )
 
 
 def read_profiles(root: Path) -> Profiles:
@@ -387,15 +406,11 @@ def parse_profiles(text: str) -> Profiles:
                                         PROFILE_FILE, blank)  # fmt: skip
         return Profiles.model_validate(table)
     except ValidationError as error:
-        clauses = [
-            say(
-                "{}: {}",
-                f"'{'.'.join(map(str, problem['loc'])) or 'file'}'",
-                problem_in_words(problem),
-            )
-            for problem in error.errors(include_input=False)
-        ]
-        said = reduce(lambda one, other: say("{}; {}", one, other), clauses)
+        said = None
+        for problem in error.errors(include_input=False):
+            key = ".".join(map(str, problem["loc"])) or "file"
+            clause = say("{}: {}", f"'{key}'", problem_in_words(problem))
+            said = clause if said is None else say("{}; {}", said, clause)
         raise MissingKnowledgeError("{}: {}", PROFILE_FILE, said) from error
     except ValueError as error:
         raise MissingKnowledgeError("{} is not valid TOML: {}", PROFILE_FILE, error) from error

@@ -86,8 +86,8 @@ class Rows:
         if self.frame.filter(is_wrong).is_empty():
             return 0
         of_rows = {f"_{name}": fact for name, fact in facts.items() if isinstance(fact, pl.Expr)}
-        place_columns = ("path", "sheet", "line", "about")
-        known = self.frame.lazy().select(*place_columns, _wrong=is_wrong, **of_rows)
+        place = pl.col("path", "sheet", "line", "about")
+        known = self.frame.lazy().select(place, _wrong=is_wrong, **of_rows)
         wrong_rows = known.filter("_wrong").collect()
         for row in wrong_rows.iter_rows(named=True):
             filled = {name[1:]: row[name] for name in of_rows}
@@ -101,17 +101,15 @@ class Rows:
             message = say_at_line(row["line"], what)
             if lost == "cell":
                 message = say("{what} The cell counts as empty.", what=message)
-            tow_id = row["about"] if self.kind.about == "tow_id" else None
             lines = [line.format(**filled) for line in ask]
             if asks_word:
                 word = filled["cell"].replace("\\", "\\\\").replace('"', '\\"')
                 lines.append(f'[words]\n"{word}" = "?"')
-            code = code or self.kind.reason_code
             fault = Fault(
                 path=row["path"],
-                tow_id=tow_id,
+                tow_id=row["about"] if self.kind.about == "tow_id" else None,
                 line=row["line"],
-                reason_code=code,
+                reason_code=code or self.kind.reason_code,
                 message=message,
                 lost=lost,
                 ask=tuple(lines),
@@ -128,11 +126,15 @@ class Rows:
             per_file: rows of one file may repeat each other; only those of another are copies.
         """
         declared = dtypes(self.kind.table)
-        keys = [column.key for column in self.kind.columns if column.key != REMARK]
-        floats = [key for key in keys if key in declared and declared[key].is_float()]
-        others = [key for key in keys if key not in floats]
+        floats = []
+        others = ["season"]
+        for key in self.kind.keys:
+            if key in declared and declared[key].is_float():
+                floats.append(key)
+            elif key != REMARK:
+                others.append(key)
         # 8.28 km/h and 2.3 m/s are one speed, though their last bits differ.
-        value = pl.struct(*others, *(pl.col(key).round_sig_figs(9) for key in floats), "season")
+        value = pl.struct(pl.col(others), pl.col(floats).round_sig_figs(9))
         nth = pl.int_range(pl.len()).over(value, "path", "sheet") if per_file else pl.lit(0)
         self.frame = self.frame.with_columns(_value=value, _nth=nth)
         self.frame = self.frame.unique(["_value", "_nth"], keep="first", maintain_order=True)
@@ -147,22 +149,16 @@ class Rows:
             code: its reason code; None for that of the list.
         """
         self.drop_copies()
-        of = pl.concat_str(*about, separator=" ")
+        of = pl.concat_str(about, separator=" ")
         key = pl.struct(about)
         is_first = pl.int_range(pl.len()).over(key) == 0
         in_sheet = pl.format("{}, sheet '{}'", "path", "sheet")
-        own_place = {
-            "line": pl.col("line"),
-            "other": pl.when(pl.col("sheet") == "").then("path").otherwise(in_sheet),
-        }
-        self.frame = self.frame.with_columns(**{f"_{k}": v for k, v in own_place.items()})
-        places = {
-            name: pl.when(is_first)
-            .then(pl.col(f"_{name}").get(1, null_on_oob=True).over(key))
-            .otherwise(pl.col(f"_{name}").first().over(key))
-            for name in own_place
-        }
-        other, line = places["other"], places["line"]
+        where = pl.when(pl.col("sheet") == "").then("path").otherwise(in_sheet)
+        self.frame = self.frame.with_columns(_line="line", _other=where)
+        place = pl.col("_line", "_other")
+        first, second = place.first().over(key), place.get(1, null_on_oob=True).over(key)
+        self.frame = self.frame.with_columns(pl.when(is_first).then(second).otherwise(first))
+        line, other = pl.col("_line"), pl.col("_other")
         self.drop(key.is_duplicated(), text, code, of=of, line=line, other=other)
         self.frame = self.frame.drop("_line", "_other")
 
@@ -191,8 +187,8 @@ def cell(key: str) -> pl.Expr:
 def make_empty_rows(kind: ListKind) -> pl.DataFrame:
     """Return the frame of a list without any row."""
     declared = dtypes(kind.table)
-    values = {c.key: declared.get(c.key, pl.String()) for c in kind.columns}
-    cells = pl.Struct({column.key: pl.String for column in kind.columns})
+    values = {key: declared.get(key, pl.String()) for key in kind.keys}
+    cells = pl.Struct(dict.fromkeys(kind.keys, pl.String))
     place: dict[str, pl.DataType] = {
         "path": pl.String(),
         "sheet": pl.String(),

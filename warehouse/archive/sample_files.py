@@ -31,6 +31,7 @@ from warehouse.archive.columns import (
     find_unit,
     fold,
     fold_names,
+    quote_names,
     shorten,
     split_header,
     split_line,
@@ -151,11 +152,8 @@ def _find_known(
 
     Raises where there is no GPS, but a column that may be one: left out, it changes numbers.
     """
-    ask_gps: tuple[str, ...] = ()
-    wants_gps = any(column.key == "gps" for column in profile.columns)
-    possible = _find_possible_gps(names, profile) if wants_gps else []
-    if possible:
-        ask_gps = (profile.ask("columns.gps"),)
+    possible = _find_possible_gps(names, profile)
+    ask_gps = [profile.ask("columns.gps")] if possible else []
     try:
         found = find_columns(names, profile.columns, line, profile.ask, ask_gps)
     except DefectiveHeaderError as error:
@@ -165,7 +163,7 @@ def _find_known(
             "There is no column 'gps', and {names} can be it. Name the one that is, or say that "
             'there is none: absent = ["gps"]. What is neither goes under ignore of the season.'
         )
-        said = say(text, names=", ".join(f"'{shorten(name)}'" for name in possible))
+        said = say(text, names=quote_names(possible))
         raise DefectiveHeaderError("unknown_column", said, line, ask_gps)
     return found
 
@@ -180,22 +178,26 @@ def _add_other_answers(error: DefectiveHeaderError, profile: SeasonProfile) -> D
         )
         said = say(text, header=said)
         ask.append(profile.ask("runs"))
-    if any(f"columns.{key} = " in line for key in ("log2", "wind_speed") for line in ask):
+    if any("columns.log2 = " in line or "columns.wind_speed = " in line for line in ask):
         said = say("{header} What was not on board goes under absent.", header=said)
         ask.append(profile.ask("absent", '["?"]'))
     return DefectiveHeaderError(error.reason_code, said, error.line, ask)
 
 
 def _find_possible_gps(names: Sequence[str], profile: SeasonProfile) -> list[str]:
-    """Return the headers that are no known column and have the unit of a speed, or none."""
-    known = fold_names(profile.columns)
-    if fold(next(c.header for c in profile.columns if c.key == "gps")) in {
-        split_header(name)[0] for name in names
-    }:
+    """Return the headers that are no known column and have the unit of a speed, or none.
+
+    There are none where a GPS is found, or not looked for.
+    """
+    gps_header = profile.find_header("gps")
+    if gps_header is None:
         return []
+    known = fold_names(profile.columns)
     possible = []
     for header in names:
         name, unit = split_header(header)
+        if name == fold(gps_header):
+            return []
         is_known = name in known or name in map(fold, profile.ignore)
         is_speed = unit is None or find_unit("speed", unit) is not None
         if name and not is_known and is_speed:
@@ -449,10 +451,6 @@ def _convert_times(
     )
 
 
-def _ask_time(profile: SeasonProfile) -> tuple[str, ...]:
-    return profile.ask("units.time"), profile.ask("absent", '["?"]')
-
-
 # Parquet
 
 
@@ -517,7 +515,11 @@ def _read_tdms(path: Path, profile: SeasonProfile, header_only: bool = False) ->
     frames, columns = [], {}
     for run, group in _assign_groups(groups, profile):
         channels = group.channels()
-        names = [_build_channel_header(channel) for channel in channels]
+        names = []
+        for channel in channels:
+            unit = channel.properties.get("unit_string")
+            has_own_unit = not unit or "[" in channel.name
+            names.append(channel.name if has_own_unit else f"{channel.name} [{unit}]")
         columns = _find_known(names, profile.leave_out_run() if run else profile)
         if header_only:
             continue
@@ -527,8 +529,8 @@ def _read_tdms(path: Path, profile: SeasonProfile, header_only: bool = False) ->
         frames.append(frame)
     if header_only:
         return SampleTable(pl.DataFrame(), columns)
-    if run_columns := {"run": FoundColumn(-1, "run")} if "run" not in columns else {}:
-        columns = columns | run_columns
+    if "run" not in columns:
+        columns = columns | {"run": FoundColumn(-1, "run")}
     shared = [key for key in columns if all(key in frame.columns for frame in frames)]
     return SampleTable(pl.concat(frame.select(shared) for frame in frames), columns)
 
@@ -567,11 +569,14 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
             names of the groups are in another order than the groups.
     """
     wanted = fold_names(profile.columns)
+    run_header = fold(profile.find_header("run") or "")
     with_channels = []
+    has_run_channel = False
     for group in groups:
-        names_of_channels = {split_header(channel.name)[0] for channel in group.channels()}
-        if len(names_of_channels & wanted) > 1:
+        channel_names = {split_header(channel.name)[0] for channel in group.channels()}
+        if len(channel_names & wanted) > 1:
             with_channels.append(group)
+            has_run_channel = has_run_channel or run_header in channel_names
     names = [group.name for group in with_channels]
     if profile.groups:
         missing = [name for name in profile.groups if name not in names]
@@ -583,10 +588,7 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
             )
         by_name = dict(zip(names, with_channels, strict=True))
         return [(run, by_name[name]) for run, name in enumerate(profile.groups, start=1)]
-    run_header = next(c.header for c in profile.columns if c.key == "run")
-    if len(with_channels) == 1 and fold(run_header) in {
-        split_header(channel.name)[0] for channel in with_channels[0].channels()
-    }:
+    if len(with_channels) == 1 and has_run_channel:
         return [(None, with_channels[0])]
     if not with_channels:
         return [(1, group) for group in groups[:1]]  # what is missing is told of the first
@@ -596,15 +598,9 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
         numbers.append(int(digits[-1]) if digits else 0)
     if len(names) > MOST_RUNS or numbers != sorted(numbers):
         text = say("The groups are {names}, and it is not clear which run each of them is.")
-        said = say(text, names=", ".join(f"'{shorten(name)}'" for name in names))
+        said = say(text, names=quote_names(names))
         raise DefectiveHeaderError("unknown_run", said, None, (profile.ask("groups", '["?"]'),))
     return [(run, group) for run, group in enumerate(with_channels, start=1)]
-
-
-def _build_channel_header(channel: Any) -> str:
-    """Return the name of a channel with its unit in brackets, as a header has it."""
-    unit = channel.properties.get("unit_string")
-    return f"{channel.name} [{unit}]" if unit and "[" not in channel.name else str(channel.name)
 
 
 def _read_group(

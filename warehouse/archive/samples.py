@@ -6,8 +6,7 @@ The runs are told by a column `run`, by a file for each, or by their begin and e
 Form only: whether they can be true is the business of `plausibility`.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -24,9 +23,7 @@ from warehouse.archive.columns import DefectiveHeaderError
 from warehouse.archive.faults import DefectiveFileError, say_at_line
 from warehouse.archive.files import PARTS, resolve_inside
 from warehouse.archive.profile import SeasonProfile
-from warehouse.archive.sample_files import SampleTable, check_header, read_table
-
-__all__ = ["check_header", "find_run_starts", "measure_steps", "read_samples", "read_tow_samples"]
+from warehouse.archive.sample_files import SampleTable, read_table
 
 OUTPUT_NAMES: Final = {
     "run": "run",
@@ -89,6 +86,7 @@ def read_tow_samples(
     files: list[str] = []
     frames: list[pl.DataFrame] = []
     lines: list[LineOf] = []
+    ends: list[int] = []
     defects: RunDefects = {}
     windows = read_windows_text(tow.get("run_windows"))
     for name, numbers, offset in (
@@ -98,37 +96,34 @@ def read_tow_samples(
         paths = tow[name].split(PARTS) if tow[name] else []
         runs = tow.get(numbers)
         run_of = [int(run) for run in runs.split(",")] if runs else [None] * len(paths)
-        own = {run - offset: window for run, window in windows.items() if run > offset}
-        own = {run: window for run, window in own.items() if run <= MOST_RUNS}
-        for path, run in zip(paths, run_of, strict=True):
-            with _about_file(path):
+        own: Windows = {}
+        for run, window in windows.items():
+            if offset < run <= offset + MOST_RUNS:
+                own[run - offset] = window
+        for path, run_of_file in zip(paths, run_of, strict=True):
+            try:
                 samples, line_of, found = read_samples(
-                    resolve_inside(root, path), profile, tow["sample_rate_hz"], run, own
+                    resolve_inside(root, path), profile, tow["sample_rate_hz"], run_of_file, own
                 )
-            before = sum(frame.height for frame in frames)
+            except DefectiveInputError as error:
+                ask = error.ask if isinstance(error, DefectiveHeaderError) else ()
+                raise DefectiveFileError(
+                    error.reason_code, error.message, error.line, path, ask
+                ) from error
+            before = ends[-1] if ends else 0
             for number, defect in found.items():
                 defects[number + offset] = defect._replace(row=before + defect.row)
             files.append(path)
             frames.append(samples.with_columns(pl.col("run") + pl.lit(offset, pl.Int8)))
             lines.append(line_of)
-    ends = np.cumsum([frame.height for frame in frames])
+            ends.append(before + samples.height)
 
     def find_place(row: int) -> tuple[str, int]:
         part = int(np.searchsorted(ends, row, "right")) if row >= 0 else 0
-        before = int(ends[part - 1]) if part else 0
+        before = ends[part - 1] if part else 0
         return files[part], lines[part](row - before if row >= 0 else row)
 
     return pl.concat(frames), find_place, defects
-
-
-@contextmanager
-def _about_file(path: str) -> Iterator[None]:
-    """Give a fault the path of the file that it is found in."""
-    try:
-        yield
-    except DefectiveInputError as error:
-        ask = error.ask if isinstance(error, DefectiveHeaderError) else ()
-        raise DefectiveFileError(error.reason_code, error.message, error.line, path, ask) from error
 
 
 def read_windows_text(text: str | None) -> Windows:
@@ -320,17 +315,20 @@ def _check_times(
         usual_hz=1 / step.median(),
         average_hz=1 / step.filter(step < MAX_GAP_S).mean(),
     )
+    is_near = (pl.col("usual_hz", "average_hz") / rate_hz - 1).abs() <= RATE_TOLERANCE
+    runs = runs.with_columns(
+        observed_hz=pl.coalesce("average_hz", "usual_hz", 0.0),
+        has_rate=pl.any_horizontal(is_near.fill_null(value=False)),
+    )
     defects: RunDefects = {}
     for found in runs.iter_rows(named=True):
         number = int(found["run"])
-        known = [rate for rate in (found["usual_hz"], found["average_hz"]) if rate]
-        observed_hz = known[-1] if known else 0.0
         if found["turn"] is not None:
             said = say("its times jump back by {seconds:.6g} s", seconds=found["back_s"])
             defects[number] = RunDefect("bad_time", said, found["turn"])
-        elif not any(abs(rate / rate_hz - 1) <= RATE_TOLERANCE for rate in known):
+        elif not found["has_rate"]:
             text = say("it has {observed:.6g} samples per second by its times, and not {rate:.6g}")
-            said = say(text, observed=observed_hz, rate=rate_hz)
+            said = say(text, observed=found["observed_hz"], rate=rate_hz)
             defects[number] = RunDefect("bad_time", said, found["row"])
     is_other_rate = runs["turn"].is_null().all()
     if is_other_rate and len(defects) == runs.height:
@@ -341,8 +339,7 @@ def _check_times(
             "unit."
         )
         first = runs.row(0, named=True)
-        rate = [hz for hz in (first["usual_hz"], first["average_hz"]) if hz]
-        said = say(text, run=first["run"], observed=rate[-1] if rate else 0.0, rate=rate_hz)
+        said = say(text, run=first["run"], observed=first["observed_hz"], rate=rate_hz)
         line = line_of(first["row"])
         ask = (profile.ask("sample_rate_hz"), profile.ask("units.time"))
         raise DefectiveHeaderError("bad_time", say_at_line(line, said), line, ask)
@@ -351,7 +348,7 @@ def _check_times(
 
 def _to_schema(raw: pl.DataFrame, wind_zero_deg: float) -> pl.DataFrame:
     """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
-    absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
+    absent = [key for key in OUTPUT_NAMES if key not in raw.columns]
     raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
     angle = pl.col("wind_angle")
     lowest, highest = raw["wind_angle"].min(), raw["wind_angle"].max()
@@ -361,14 +358,13 @@ def _to_schema(raw: pl.DataFrame, wind_zero_deg: float) -> pl.DataFrame:
         turned = pl.when(turned == 360).then(0.0).otherwise(turned)
         wrapped = pl.when(angle.is_between(-180, 360)).then(turned).otherwise(angle)
         raw = raw.with_columns(wrapped.alias("wind_angle"))
-    samples = raw.select(
-        pl.col(key).cast(SAMPLE_SCHEMA[name]).alias(name) for key, name in OUTPUT_NAMES.items()
-    )
+    samples = raw.rename(OUTPUT_NAMES).select(SAMPLE_SCHEMA.keys()).cast(pl.Schema(SAMPLE_SCHEMA))
     # A number such as 1e39 is finite in 64 bits and not in 32.
-    infinite = [column.name for column in samples.iter_columns()
-                if column.dtype.is_float() and column.is_infinite().any()]  # fmt: skip
-    floats = pl.col(infinite)
-    return samples.with_columns(pl.when(floats.is_infinite()).then(float("nan")).otherwise(floats))
+    floats = pl.selectors.float()
+    is_infinite = floats.is_infinite()
+    if not samples.select(pl.any_horizontal(is_infinite.any())).item():
+        return samples
+    return samples.with_columns(pl.when(is_infinite).then(float("nan")).otherwise(floats))
 
 
 def measure_steps(samples: pl.DataFrame) -> dict[str, float | None]:
@@ -380,11 +376,13 @@ def measure_steps(samples: pl.DataFrame) -> dict[str, float | None]:
     Returns:
         `gps_step_m_s` and `force_step_n`; None where a channel has too few values to tell.
     """
-    names = {"gps_step_m_s": "gps_m_s", "force_step_n": "force_n"}
-    return {step: _find_least_step(samples[name]) for step, name in names.items()}
-
-
-def _find_least_step(channel: pl.Series) -> float | None:
-    values = channel.drop_nulls().to_numpy()[:: max(len(channel) // ENOUGH_FOR_STEPS, 1)]
-    distinct = np.unique(values[np.isfinite(values)].astype(np.float64))
-    return float(np.diff(distinct).min()) if len(distinct) >= FEWEST_FOR_STEPS else None
+    steps: dict[str, float | None] = {}
+    for name, channel in (
+        ("gps_step_m_s", samples["gps_m_s"]),
+        ("force_step_n", samples["force_n"]),
+    ):
+        values = channel.drop_nulls().to_numpy()[:: max(len(channel) // ENOUGH_FOR_STEPS, 1)]
+        distinct = np.unique(values[np.isfinite(values)].astype(np.float64))
+        is_enough = len(distinct) >= FEWEST_FOR_STEPS
+        steps[name] = float(np.diff(distinct).min()) if is_enough else None
+    return steps

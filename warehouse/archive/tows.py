@@ -33,6 +33,8 @@ TWICE: Final = 2.0
 """A size this many times that of the boat list cannot be right (inferred)."""
 _SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m")
 """What a tow or else its boat must have; the height of the bow only where wind was measured."""
+_LISTED_SIZES: Final = _SIZES + ("weight_kg",)
+"""What the boat list says that a tow's own measure can be held against."""
 _TOW_ID: Final = r"^[^/\\\x00-\x1f]{1,64}$"
 
 
@@ -119,16 +121,15 @@ def read_selection(written: str, has_second: bool, plan: Plan) -> frozenset[int]
         has_second: the tow has a second file; all of its runs count too where the plan has them.
         plan: the runs of the tow.
     """
-    if not written:
-        second = plan.runs if plan.second_directions and has_second else ()
-        return frozenset([*plan.runs, *(SECOND_FILE_OFFSET + run for run in second)])
-    parts = split_runs(written)
     planned = {str(run): run for run in plan.runs}
-    if has_second:
-        planned |= {f"b{run}": SECOND_FILE_OFFSET + run for run in plan.runs}
-    runs = [planned.get(part) for part in parts]
-    is_good = None not in runs and len(set(runs)) == len(runs)
-    return frozenset(run for run in runs if run) if is_good else frozenset()
+    if has_second and (written or plan.second_directions):
+        for run in plan.runs:
+            planned[f"b{run}"] = SECOND_FILE_OFFSET + run
+    if not written:
+        return frozenset(planned.values())
+    parts = split_runs(written)
+    is_good = planned.keys() >= set(parts) and len(set(parts)) == len(parts)
+    return frozenset(planned[part] for part in parts) if is_good else frozenset()
 
 
 def index_samples(files: Iterable[ArchiveFile], hashes: Hashes) -> pl.DataFrame:
@@ -137,13 +138,20 @@ def index_samples(files: Iterable[ArchiveFile], hashes: Hashes) -> pl.DataFrame:
     Of several with one name, their `number` and the first: whether it is `inside`, its `path`, and
     its `sha256`, null where it cannot be read.
     """
-    found = [
-        (file.season, fold_file_name(file.full_path.name), file.inside, file.path,
-         hashes.get(file.path, (None, 0))[0])
-        for file in files if file.kind == SAMPLES
-    ]  # fmt: skip
-    schema = {"season": pl.Int32, "name": pl.String, "inside": pl.Boolean}
-    frame = pl.DataFrame(found, schema | {"path": pl.String, "sha256": pl.String}, orient="row")
+    found = []
+    for file in files:
+        if file.kind == SAMPLES:
+            sha256, _ = hashes.get(file.path, (None, 0))
+            name = fold_file_name(file.full_path.name)
+            found.append((file.season, name, file.inside, file.path, sha256))
+    schema = {
+        "season": pl.Int32,
+        "name": pl.String,
+        "inside": pl.Boolean,
+        "path": pl.String,
+        "sha256": pl.String,
+    }
+    frame = pl.DataFrame(found, schema, orient="row")
     first = pl.col("inside", "path", "sha256").first()
     return frame.group_by("season", "name", maintain_order=True).agg(
         first, number=pl.len(), runs=pl.lit(None, pl.String)
@@ -174,23 +182,27 @@ def _add_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl.
     known = {(row["season"], row["name"]): row for row in samples.iter_rows(named=True)}
     together: dict[tuple[int, str], dict[str, Any]] = {}
     facts = rows.frame.select("tow_id", "season", "file", "second_file")
-    for tow_id, season, *cells in facts.iter_rows():
+    for tow_id, season, first_cell, second_cell in facts.iter_rows():
         plan, profile = profiles.find_plan(tow_id, season), profiles.find(season)
-        for cell_text in filter(None, cells):
-            names = name_run_files(cell_text, profile, plan)
-            parts = {run: known[season, name] for run, name in names.items()
-                     if (season, name) in known}  # fmt: skip
+        for cell_text in (first_cell, second_cell):
+            names = name_run_files(cell_text, profile, plan) if cell_text else {}
+            runs: list[str] = []
+            parts: list[dict[str, Any]] = []
+            for run, name in names.items():
+                if (season, name) in known:
+                    runs.append(str(run))
+                    parts.append(known[season, name])
             if not parts:
                 continue
-            hashes = [part["sha256"] for part in parts.values()]
+            hashes = [part["sha256"] for part in parts]
             together[season, fold_file_name(cell_text)] = {
                 "season": season,
                 "name": fold_file_name(cell_text),
-                "inside": all(part["inside"] for part in parts.values()),
-                "path": PARTS.join(part["path"] for part in parts.values()),
+                "inside": all(part["inside"] for part in parts),
+                "path": PARTS.join(part["path"] for part in parts),
                 "sha256": None if None in hashes else combine_hashes(hashes),
-                "number": max(part["number"] for part in parts.values()),
-                "runs": ",".join(map(str, parts)),
+                "number": max(part["number"] for part in parts),
+                "runs": ",".join(runs),
             }
     entries = known | together
     return pl.DataFrame(list(entries.values()), samples.schema, orient="row")
@@ -203,7 +215,9 @@ def _add_samples(rows: Rows, key: str, samples: pl.DataFrame) -> None:
     cell_of = pl.col(key)
     facts: dict[str, Any] = {"name": pl.col(key), "season": pl.col("season")}
     rows.drop(cell_of.str.contains(r"[/\\]|^\.\."), text, "path_outside_archive", **facts)
-    named = samples.rename({name: f"{prefix}_{name}" for name in ("path", "sha256", "runs")})
+    named = samples.rename(
+        {"path": f"{prefix}_path", "sha256": f"{prefix}_sha256", "runs": f"{prefix}_runs"}
+    )
     name = cell_of.map_elements(fold_file_name, pl.String)
     rows.frame = rows.frame.with_columns(name=name).join(
         named, on=["season", "name"], how="left", maintain_order="left"
@@ -280,14 +294,14 @@ def _add_boat(rows: Rows, boats: Boats) -> None:
     is_known = boat_of.is_in(boats.listed["fsn_no"].implode())
     rows.drop(~is_known, text, "unknown_boat", boat=boat_of)
     sizes = boats.listed.unique("fsn_no", maintain_order=True).select(
-        "fsn_no", pl.col(*_SIZES, "weight_kg").name.prefix("listed_")
+        "fsn_no", pl.col(_LISTED_SIZES).name.prefix("listed_")
     )
     rows.frame = rows.frame.join(sizes, on="fsn_no", how="left", maintain_order="left")
     text = say(
         "column '{column}' is {cell} and the boat list says {listed:g}; one of the two cannot be "
         "right."
     )
-    for key in (*_SIZES, "weight_kg"):
+    for key in _LISTED_SIZES:
         # No rebuilding makes a boat twice as long or heavy: in feet, or a digit too many.
         listed = pl.col(f"listed_{key}")
         is_apart = ~(pl.col(key) / listed).is_between(1 / TWICE, TWICE, closed="none")
@@ -353,9 +367,11 @@ def _add_instruments(
     for name in ("load_cell_ratio", "load_cell_sd"):
         frame = frame.with_columns(before[name].fill_null(after[name]))
     frame = frame.sort("_row").join(burned, on="tow_id", how="left", maintain_order="left")
-    plans = (profiles.find_plan(*tow) for tow in frame.select("tow_id", "season").rows())
-    planned_s = pl.Series([plan.seconds for plan in plans], dtype=pl.Float64)
-    rows.frame = frame.with_columns(lamp_ratio=pl.col("burned_s") / planned_s)
+    planned_s = []
+    for tow_id, season in frame.select("tow_id", "season").iter_rows():
+        planned_s.append(profiles.find_plan(tow_id, season).seconds)
+    lamp_ratio = pl.col("burned_s") / pl.Series(planned_s, dtype=pl.Float64)
+    rows.frame = frame.with_columns(lamp_ratio=lamp_ratio)
 
 
 def plan_runs(

@@ -169,7 +169,7 @@ def _read_sheet(sheet: Any, written: _Written) -> Sheet:
         cells = []
         for column in range(1, written.columns + 1):
             place = line, column
-            text = _cell_text(sheet.cell(*place), written.formulas.get(place))
+            text = _cell_text(sheet.cell(line, column), written.formulas.get(place))
             cells.append(MERGED if place in merged else text)
         if not any(cells):
             continue

@@ -68,16 +68,18 @@ def archive_tables(
     set_aside = pl.concat([list_faults, beyond, unsound, losses, contradicted], how="diagonal")
     tables = {
         "boats": listed_boats.unique("fsn_no", keep="last", maintain_order=True),
-        "seasons": _seasons(season_tows, sound, losses),
+        "seasons": _count_tows(season_tows, sound, losses),
         "tows": tows.join(
-            _lost_of_tows(losses).drop("lost_s"), on="tow_id", how="left", maintain_order="left"
+            _sum_losses(losses).drop("lost_s"), on="tow_id", how="left", maintain_order="left"
         ).with_columns(pl.col("runs_set_aside").fill_null(0)),
         "tow_runs": _add_lost_seconds(runs, losses),
         "hand_windows": windows.join(beyond, on=["path", "line"], how="anti"),
         "quarantine": add_first_seen(set_aside, quarantine_before, today),
     }
     if tables["tows"].is_empty():
-        waits = _waits_for_samples(tables["quarantine"])
+        reasons = tables["quarantine"].drop_nulls("tow_id")["reason_code"].unique().to_list()
+        # Nothing is wrong but that tows are not listed, or have no samples, yet.
+        waits = tables["quarantine"].is_empty() or reasons == [SAMPLES_MISSING]
         reason = _explain_no_tows(tables["quarantine"], waits)
         if has_earlier_tows or not waits:
             raise MissingKnowledgeError(reason)
@@ -102,7 +104,8 @@ def read_archive(store: Store, root: Path, today: dt.date | None = None) -> None
     runs = tables["listed_runs"]
     none = frame_of(SeasonIndex, []).insert_column(0, pl.Series("season", [], pl.Int32))
     seasons = tows.partition_by("season", maintain_order=True)
-    samples = pl.concat([none, *(intake.read_tows(store, root, runs, own) for own in seasons)])
+    read = [intake.read_tows(store, root, runs, own) for own in seasons]
+    samples = pl.concat([none] + read)
     lake.keep_only(store, samples)
     blocks = lake.all_blocks(store, samples)
     made = archive_tables(
@@ -149,7 +152,7 @@ def _add_reading_steps(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _lost_of_tows(losses: pl.DataFrame) -> pl.DataFrame:
+def _sum_losses(losses: pl.DataFrame) -> pl.DataFrame:
     """Return per tow how many runs are set aside, and the seconds that are left out."""
     return losses.group_by("tow_id", maintain_order=True).agg(
         (pl.col("lost") == "run").sum().alias("runs_set_aside"),
@@ -187,11 +190,11 @@ def judge_tows(
     return kept, pl.concat([twice, gross])
 
 
-def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+def _count_tows(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
     """Return how many tows each season lists, how many can be used, and what is lost of these."""
     is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
     return (
-        listed.join(_lost_of_tows(losses), on="tow_id", how="left", maintain_order="left")
+        listed.join(_sum_losses(losses), on="tow_id", how="left", maintain_order="left")
         .group_by("season", maintain_order=True)
         .agg(
             pl.len().alias("listed"),
@@ -199,12 +202,6 @@ def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) ->
             pl.col("runs_set_aside", "lost_s").sum(),
         )
     )
-
-
-def _waits_for_samples(set_aside: pl.DataFrame) -> bool:
-    """Return whether nothing is wrong but that tows are not listed, or have no samples, yet."""
-    reasons = set_aside.drop_nulls("tow_id")["reason_code"].unique().to_list()
-    return set_aside.is_empty() or reasons == [SAMPLES_MISSING]
 
 
 def _explain_no_tows(set_aside: pl.DataFrame, waits_for_samples: bool) -> str:

@@ -29,26 +29,20 @@ STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.1 reads the file; the newest form would shut out programs of last year."""
 
 
-def _meaning(schema: type[dy.Schema]) -> str:
-    """Return the meaning of a table, with its key."""
+def _describe_table(schema: type[dy.Schema]) -> tuple[str, dict[str, str]]:
+    """Return the meaning of a table with its key, and that of its columns, each with its unit."""
     key = ", ".join(schema.primary_key())
-    return f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
-
-
-def _column_meanings(schema: type[dy.Schema]) -> dict[str, str]:
-    """Return the meaning of the columns of a table, each with its unit."""
-    meanings = {}
+    meaning = f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
+    columns = {}
     for name, column in schema.columns().items():
         unit = (column.metadata or {}).get("unit")
         if unit is None and column.dtype.is_numeric():
             unit = find_number_form(name).unit
-        meanings[name] = f"{column.description} [{unit}]" if unit else str(column.description)
-    return meanings
+        columns[name] = f"{column.description} [{unit}]" if unit else str(column.description)
+    return meaning, columns
 
 
-MEANINGS: Final = {
-    name: (_meaning(schema), _column_meanings(schema)) for name, schema in (TABLES | ABOUT).items()
-}
+MEANINGS: Final = {name: _describe_table(schema) for name, schema in (TABLES | ABOUT).items()}
 """What the file says of its tables and their columns."""
 
 
@@ -65,8 +59,8 @@ def warehouse_database(
 ) -> pl.DataFrame:
     """Write all tables into one DuckDB file, swapped in whole; return its contents and hash."""
     known_terms = objection_terms.filter(pl.col("value") != "")
-    tables["about"] = pl.concat([_about(about_archive), known_terms])
-    tables["contents"] = _contents(tables)
+    tables["about"] = pl.concat([_describe_archive(about_archive), known_terms])
+    tables["contents"] = _list_contents(tables)
     build_database(store.database, tables)
     sha256 = pl.lit(file_sha256(store.database)).alias("sha256")
     return tables["contents"].select("table", "rows", sha256)
@@ -91,7 +85,7 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
         beside.unlink()
         with duckdb.connect() as connection:
             connection.execute("SET threads = 1")
-            connection.execute(f"ATTACH {_quoted(str(beside))} AS w (STORAGE_VERSION '{STORAGE}')")
+            connection.execute(f"ATTACH {_quote(str(beside))} AS w (STORAGE_VERSION '{STORAGE}')")
             connection.execute("USE w; CREATE SCHEMA study")
             for name, frame in sorted(tables.items()):
                 # Each comment by itself would sync the disk; all tables at once would fill memory.
@@ -112,41 +106,38 @@ def _add_table(connection: duckdb.DuckDBPyConnection, name: str, frame: pl.DataF
     connection.execute(f"CREATE TABLE {place} AS SELECT * FROM frame")  # noqa: S608
     connection.unregister("frame")
     meaning, columns = MEANINGS.get(name, ("", {}))
-    comments = [f"COMMENT ON TABLE {place} IS {_quoted(meaning)}"]
-    comments += (
-        f'COMMENT ON COLUMN {place}."{column}" IS {_quoted(text)}'
-        for column, text in columns.items()
-    )
+    comments = [f"COMMENT ON TABLE {place} IS {_quote(meaning)}"]
+    for column, text in columns.items():
+        comments.append(f'COMMENT ON COLUMN {place}."{column}" IS {_quote(text)}')
     connection.execute(";".join(comments))  # one by one they take half as long again
 
 
 def _add_views(connection: duckdb.DuckDBPyConnection) -> None:
     for name, view in VIEWS.items():
         connection.execute(f'CREATE VIEW "{name}" AS {view.query}')
-        connection.execute(f'COMMENT ON VIEW "{name}" IS {_quoted(view.meaning)}')
+        connection.execute(f'COMMENT ON VIEW "{name}" IS {_quote(view.meaning)}')
         known: dict[str, str] = {}
         for table in reversed(view.tables):
             known |= MEANINGS[table][1]
         known |= view.own
         for column in connection.table(name).columns:
-            connection.execute(f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(known[column])}')
+            connection.execute(f'COMMENT ON COLUMN "{name}"."{column}" IS {_quote(known[column])}')
 
 
-def _quoted(text: str) -> str:
+def _quote(text: str) -> str:
     return "'" + text.replace("'", "''") + "'"
 
 
-def _about(about_archive: pl.DataFrame) -> pl.DataFrame:
+def _describe_archive(about_archive: pl.DataFrame) -> pl.DataFrame:
     archive = about_archive.row(0, named=True)
-    about = {
-        "simulated": str(archive["simulated"]).lower(),
-        "code_version": code_version(),
-        **{key: archive[key] for key in ("publisher", "licence") if archive[key]},
-    }
+    about = {"simulated": str(archive["simulated"]).lower(), "code_version": code_version()}
+    for key in ("publisher", "licence"):
+        if archive[key]:
+            about[key] = archive[key]
     return pl.DataFrame({"key": list(about), "value": list(about.values())})
 
 
-def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
+def _list_contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     """Return every table with its rows and meaning, for those who open the database."""
     names = sorted(set(tables) & set(TABLES))
     return pl.DataFrame(

@@ -34,7 +34,7 @@ def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
         tows,
         edition.method.validity,
         read_decisions_of_edition(store, edition),
-    ).join(lines, on=[*LINE, "tow_id"], how="anti")
+    ).join(lines, on=LINE + ("tow_id",), how="anti")
     both = pl.concat([earlier, lines.select(earlier.columns)])
     return history_rows(both, edition.manifest.edition, edition.method.name)
 

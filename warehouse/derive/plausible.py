@@ -9,7 +9,6 @@ faults and needs these tows for it.
 
 import math
 from collections.abc import Sequence
-from functools import reduce
 from typing import Final
 
 import polars as pl
@@ -58,7 +57,14 @@ def list_gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFra
         if tow_id in gross:
             shift = gross[tow_id]
             code = f"{_SENSOR[shift.quantity]}_not_plausible"
-            faults.append(Fault(path, tow_id, None, code, _sentence(shift), lost="tow"))
+            fault = Fault(
+                path=path,
+                tow_id=tow_id,
+                reason_code=code,
+                message=_describe_fault(shift),
+                lost="tow",
+            )
+            faults.append(fault)
     return fault_frame(faults)
 
 
@@ -79,7 +85,7 @@ def add_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:
     )
 
 
-def _sentence(shift: Shift) -> str:
+def _describe_fault(shift: Shift) -> str:
     """Say to a volunteer what is seen, what it may be, and what to do."""
     whose = {
         "tow": say("This tow"),
@@ -88,7 +94,7 @@ def _sentence(shift: Shift) -> str:
         "season": say("All {} tows of season {}", len(shift.tows), shift.key),
         "archive": say("All tows of the archive"),
     }[shift.kind]
-    return say("{}: {}. {}", whose, _describe_shift(shift), _way_out(shift))
+    return say("{}: {}. {}", whose, _describe_shift(shift), _propose_remedy(shift))
 
 
 def _describe_shift(shift: Shift) -> str:
@@ -112,7 +118,7 @@ def _describe_shift(shift: Shift) -> str:
     return say("all wind angles lie between -3.14 and 6.28, as angles in radians do")
 
 
-def _way_out(shift: Shift) -> str:
+def _propose_remedy(shift: Shift) -> str:
     if not shift.causes:
         return say(
             "Check whether these are this boat's samples, and what the load cell was set to."
@@ -124,7 +130,9 @@ def _way_out(shift: Shift) -> str:
             shift.size,
         )
     causes = [say(text, *values) for text, *values in shift.causes]
-    cause = reduce(lambda one, other: say("{} or {}", one, other), causes)
+    cause = causes[0]
+    for other in causes[1:]:
+        cause = say("{} or {}", cause, other)
     likely = say("It looks like {}: correct the unit in the header, or the scale.", cause)
     if (shift.kind, shift.quantity) != ("tow", "force"):
         return likely

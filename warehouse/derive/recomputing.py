@@ -29,7 +29,7 @@ from warehouse.store.unforeseen import (
 METHOD_TABLES: Final = (
     "run_points", "curves", "log_factors", "season_links",
     "season_diagnosis", "tow_instruments", "best_estimate_weights", "uncertainty_budget",
-    "curve_points", "assessments", "ensemble",
+    "curve_points", "tow_currents", "assessments", "ensemble",
 )  # fmt: skip
 """The tables of all tows under a method."""
 
@@ -106,7 +106,8 @@ def recompute_archive(methods: Sequence[Method], archive: ArchiveRuns) -> Recomp
     faults = []
     for tow_id, error in failing.items():
         message = sentence(tow_id, shorten_error(error))
-        faults.append(Fault(paths[tow_id], tow_id, None, UNFORESEEN, message))
+        fault = Fault(path=paths[tow_id], tow_id=tow_id, reason_code=UNFORESEEN, message=message)
+        faults.append(fault)
     return RecomputedArchive(
         tables={name: pl.concat([one[name] for one in made]) for name in METHOD_TABLES},
         tows=sound.tows,
@@ -156,4 +157,4 @@ def _recompute(method: Method, archive: ArchiveRuns, cache: RunCache) -> dict[st
     """Return `METHOD_TABLES` of one method."""
     runs = stack_blocks(archive.blocks, add_hand_windows(archive.tow_runs, archive.hand_windows))
     made = recompute(method, add_boats(archive.tows, archive.boats), runs, cache)
-    return {**vars(made), "ensemble": members_of(method, made)}
+    return vars(made) | {"ensemble": members_of(method, made)}

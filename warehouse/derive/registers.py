@@ -65,7 +65,11 @@ def register_tables(
     as_of = reference_day(tows, listed_races)
     unmeasured = unmeasured_tows(listed_tows, printed_registers, tows, as_of)
     printed = printed_registers.filter("has_valid_curve").sort("season", maintain_order=True)
-    lines, drafts, histories = {}, [], []
+    lines: dict[str, pl.DataFrame] = {}
+    drafts: list[pl.DataFrame] = []
+    histories = []
+    changes: list[pl.DataFrame] = [RegisterChanges.create_empty()]
+    ladders = correction_steps.filter(pl.col("position") > 0, from_method=methods[0].name)
     for method in methods:
         own_curves = curves.filter(method=method.name)
         factors = log_factors.filter(method=method.name)
@@ -74,16 +78,13 @@ def register_tables(
         on_day = draft_register(own_curves, tows, listed_boats, as_of, rule, decisions, carried)
         in_time = lines_of_all_days(own_curves, tows, rule, decisions, carried)
         lines[method.name] = flag_unmeasured(on_day, unmeasured, decisions)
-        drafts.append(_draft(method.name, lines[method.name], tows))
+        drafts.append(_make_draft(method.name, lines[method.name], tows))
         histories.append(history_rows(in_time, draft_name(method.name), method.name))
+        if method != methods[0]:
+            steps = steps_of_lines(drafts[0], ladders.filter(to_method=method.name))
+            compared = compare_lines(drafts[0], drafts[-1], steps)
+            changes.append(compared.select(RegisterChanges.column_names()))
     register = pl.concat(drafts)
-    ladders = correction_steps.filter(pl.col("position") > 0, from_method=methods[0].name)
-    first = drafts[0]
-    changes: list[pl.DataFrame] = [RegisterChanges.create_empty()]
-    for draft in drafts[1:]:
-        steps = steps_of_lines(first, ladders.filter(to_method=draft["method"][0]))
-        lines_compared = compare_lines(first, draft, steps)
-        changes.append(lines_compared.select(RegisterChanges.column_names()))
     hashes = {method.name: method.content_hash for method in methods}
     made = {
         "register": register,
@@ -102,18 +103,14 @@ def race_changes(
 ) -> pl.DataFrame:
     """Replay all races in the archive under both editions of every pair that is compared."""
     pairs = register_changes.select(EDITIONS).unique().sort(EDITIONS)
-    replayed = {
-        edition: replay.replay(
-            register_history.filter(edition=edition), listed_races, replay.RaceRules()
-        )
-        for edition in pairs.unpivot()["value"].unique()
-    }
-    frames = [
-        replay.race_changes(replayed[old], replayed[new]).with_columns(
-            from_edition=pl.lit(old), to_edition=pl.lit(new)
-        )
-        for old, new in pairs.iter_rows()
-    ]
+    replayed = {}
+    for edition in pairs.unpivot()["value"].unique():
+        lines = register_history.filter(edition=edition)
+        replayed[edition] = replay.replay(lines, listed_races, replay.RaceRules())
+    frames = []
+    for old, new in pairs.iter_rows():
+        changes = replay.race_changes(replayed[old], replayed[new])
+        frames.append(changes.with_columns(from_edition=pl.lit(old), to_edition=pl.lit(new)))
     return pl.concat(frames) if frames else RaceChanges.create_empty()
 
 
@@ -127,20 +124,22 @@ def due_of_lines(
     lines: Mapping[str, pl.DataFrame], boats: pl.DataFrame, races: pl.DataFrame, as_of: dt.date
 ) -> pl.DataFrame:
     """Return rows of `due_list`, of the lines of each method."""
-    parts = {method: due.due_list(own, boats, races, as_of) for method, own in lines.items()}
-    named = (
-        part.select(pl.lit(method).alias("method"), pl.all()) for method, part in parts.items()
-    )
-    return pl.concat(named)
+    of_methods = []
+    for method, own in lines.items():
+        part = due.due_list(own, boats, races, as_of)
+        of_methods.append(part.select(pl.lit(method).alias("method"), pl.all()))
+    return pl.concat(of_methods)
 
 
-def _draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    edition, name = pl.lit(draft_name(method)), pl.lit(method)
-    code = pl.lit(None, pl.String).alias("verification_code")
-    measured = lines.join(
-        tows.select("tow_id", pl.col(SIZES)), on="tow_id", how="left", maintain_order="left"
+def _make_draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Return rows of `register`: the lines of a method with the sizes of the boats."""
+    sizes = tows.select("tow_id", pl.col(SIZES))
+    return lines.join(sizes, on="tow_id", how="left", maintain_order="left").select(
+        pl.lit(draft_name(method)).alias("edition"),
+        pl.lit(method).alias("method"),
+        pl.all(),
+        pl.lit(None, pl.String).alias("verification_code"),
     )
-    return measured.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
 
 
 # Published editions
@@ -152,28 +151,27 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
     Raises:
         BrokenPromiseError: a file of an edition is missing or damaged.
     """
-    rows: dict[str, list[pl.DataFrame]] = {
-        name: [] for name in ("editions", "register", "register_history", CHANGES, "lineage")
-    }
+    names = ("editions", "register", "register_history", CHANGES, "lineage")
+    parts: dict[str, list[pl.DataFrame]] = {name: [TABLES[name].create_empty()] for name in names}
     for name in edition_names(store):
         edition = read_edition(store, name)
-        rows["editions"].append(_edition_row(edition))
-        rows["register"].append(edition.register)
-        rows["register_history"].append(lines_in_time(store, edition))
+        rows = {
+            "editions": _describe_edition(edition),
+            "register": edition.register,
+            "register_history": lines_in_time(store, edition),
+        }
         if CHANGES in edition.tables:
-            rows[CHANGES].append(edition.tables[CHANGES])
+            rows[CHANGES] = edition.tables[CHANGES]
         if edition.method is not None:
             hashes = {edition.method.name: edition.manifest.method_hash}
             tows, code_version = edition.tables["tows"], edition.manifest.code_version
-            rows["lineage"].append(lineage_rows(edition.register, tows, hashes, code_version))
-    tables = {}
-    for table, frames in rows.items():
-        conforming = [conform(table, frame) for frame in frames]
-        tables[table] = pl.concat([TABLES[table].create_empty(), *conforming])
-    return tables
+            rows["lineage"] = lineage_rows(edition.register, tows, hashes, code_version)
+        for table, frame in rows.items():
+            parts[table].append(conform(table, frame))
+    return {table: pl.concat(frames) for table, frames in parts.items()}
 
 
-def _edition_row(edition: Edition) -> pl.DataFrame:
+def _describe_edition(edition: Edition) -> pl.DataFrame:
     """Return the row of `editions` about an edition."""
     about = edition.manifest.model_dump(include=set(TABLES["editions"].column_names()))
     interval = edition.method and edition.method.interval

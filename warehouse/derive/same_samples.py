@@ -52,7 +52,7 @@ def find_same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     )
     faults: list[Fault] = []
     for _, same in runs.group_by("content", maintain_order=True):
-        faults += _faults(same)
+        faults += _find_faults(same)
     rows = fault_frame(faults)
     return rows.unique("tow_id", keep="first", maintain_order=True)
 
@@ -74,22 +74,21 @@ def _add_content(runs: pl.DataFrame) -> pl.DataFrame:
     return runs.with_columns(pl.Series("content", content))
 
 
-def _faults(same: pl.DataFrame) -> Iterator[Fault]:
-    """Return faults of tows with one content: of all of them, or of all but the first."""
+def _find_faults(same: pl.DataFrame) -> Iterator[Fault]:
+    """Yield faults of tows with one content: of all of them, or of all but the first."""
     first = same.row(0, named=True)
     of_one = same.select(LINE).n_unique() == 1
     for row in same.iter_rows(named=True):
-        other = next((r for r in same.iter_rows(named=True) if r["tow_id"] != row["tow_id"]), None)
-        if other is None or (of_one and row["tow_id"] == first["tow_id"]):
+        others = same.filter(pl.col("tow_id") != row["tow_id"])
+        may_have_it = row["tow_id"] == first["tow_id"] or row["run"] > SECOND_FILE_OFFSET
+        if others.is_empty() or (of_one and may_have_it):
             continue
-        if of_one and row["run"] > SECOND_FILE_OFFSET:
-            continue
+        other = others.row(0, named=True)
         yield Fault(
-            row["samples_path"],
-            row["tow_id"],
-            None,
-            "duplicate_tow" if of_one else "samples_listed_twice",
-            say(
+            path=row["samples_path"],
+            tow_id=row["tow_id"],
+            reason_code="duplicate_tow" if of_one else "samples_listed_twice",
+            message=say(
                 "Run {} holds exactly the samples of tow {} ({}) of {} {}{}, packed or "
                 "written otherwise.",
                 row["run"] % SECOND_FILE_OFFSET,

@@ -33,14 +33,14 @@ def study_tables(
     run_cache: RunCache,
 ) -> dict[str, pl.DataFrame]:
     """Return the ladder from the first method to this one, and the studies of its options."""
-    known, own = (tows, runs), pl.lit(method.name).alias("method")
+    own = pl.lit(method.name).alias("method")
     links = tow_instruments.filter(method=method.name)
     effects, ticked, ladders = [], [], []
     if method.name in TICKED:
-        ticked = [option_curves(method, *known, links, run_cache).with_columns(own)]
+        ticked = [option_curves(method, tows, runs, links, run_cache).with_columns(own)]
         effects = [tick_effects(ticked[0]).with_columns(own, study=pl.lit(TOOL))]
     if method.name in JUDGED:
-        judged = option_effects(method, *known, links, run_cache)
+        judged = option_effects(method, tows, runs, links, run_cache)
         effects.append(judged.with_columns(own, study=pl.lit(JUDGEMENT)))
     if method != first_method:
         old, new = first_method, method
@@ -48,14 +48,14 @@ def study_tables(
             old, new = method, first_method
         before = tow_instruments.filter(method=old.name)
         after = tow_instruments.filter(method=new.name)
-        steps = ladder(old, new, *known, (before, after), run_cache)
+        steps = ladder(old, new, tows, runs, (before, after), run_cache)
         ladders = [steps.with_columns(from_method=pl.lit(old.name), to_method=pl.lit(new.name))]
     return {
-        "correction_steps": _together(CorrectionSteps, ladders),
-        "option_effects": _together(OptionEffects, effects),
-        "option_curves": _together(OptionCurves, ticked),
+        "correction_steps": _join_frames(CorrectionSteps, ladders),
+        "option_effects": _join_frames(OptionEffects, effects),
+        "option_curves": _join_frames(OptionCurves, ticked),
     }
 
 
-def _together(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
+def _join_frames(schema: type[dy.Schema], frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
     return pl.concat(frames, how="diagonal") if frames else schema.create_empty()

@@ -50,7 +50,7 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     if CHANGES in new.tables and new.manifest.previous == old.manifest.edition:
         return new.tables[CHANGES]
     before, after = _add_printed_tows(old, new), new.register
-    ladder = _ladder(store, old, new)
+    ladder = _compute_ladder(store, old, new)
     parts = steps_of_lines(before, ladder.filter(pl.col("position") > 0))
     if old.method is None and new.method is not None:
         printed = _explain_printed_lines(before, ladder, new, new.method)
@@ -77,7 +77,7 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         )
         lines = lines.join(facts, on=LINE, how="left", maintain_order="left")
     name = pl.coalesce("new_name", "old_name").alias("name")
-    return lines.sort(LINE).select(*beside, name, "old_status", "new_status")
+    return lines.sort(LINE).select(pl.col(beside), name, "old_status", "new_status")
 
 
 def _add_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
@@ -93,7 +93,7 @@ def _add_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
     return old.register.drop("tow_id").join(once, on=TOW_DAY, how="left", maintain_order="left")
 
 
-def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+def _compute_ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """Apply the steps from the old method to the new one, one after another, to the same tows.
 
     From print it begins at the method that was in force when the register was printed.
@@ -108,24 +108,19 @@ def _ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return no_ladder
     today = tables_of_today(store)
     there = pl.col("tow_id").is_in(list(find_same_tows(new.tables, today)))
-    tows, runs = (table.filter(there) for table in today.values())
-    if tows.is_empty():
-        return no_ladder
-    start = old.method or _method_in_print(store, old)
+    tows, runs = today["tows"].filter(there), today["tow_runs"].filter(there)
+    start = old.method
     if start is None:
+        printed_in = old.manifest.printed_in or old.manifest.valid_from.year
+        known = KnownMethods.from_store(store)
+        start = find_method_in_force(printed_in, [known.get(name) for name in known.names])
+    if tows.is_empty() or start is None:
         return no_ladder
     blocks = stack_blocks(intake.all_blocks(store), runs)
     before = old.tables.get("tow_instruments")
     after = new.tables.get("tow_instruments")
     is_known = after is not None and (before is not None or old.method is None)
     return ladder(start, new.method, tows, blocks, (before, after) if is_known else None)
-
-
-def _method_in_print(store: Store, printed: Edition) -> Method | None:
-    """Return the method in force when an edition was printed; None where no method says so."""
-    printed_in = printed.manifest.printed_in or printed.manifest.valid_from.year
-    known = KnownMethods.from_store(store)
-    return find_method_in_force(printed_in, [known.get(name) for name in known.names])
 
 
 def _explain_printed_lines(
@@ -228,8 +223,8 @@ def report(old: Edition, new: Edition, lines: pl.DataFrame) -> DiffReport:
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
         causes=summarise_causes(compared),
-        largest=_rows(largest_first(moved).head(LARGEST)),
-        rows=_rows(lines),
+        largest=_list_rows(largest_first(moved).head(LARGEST)),
+        rows=_list_rows(lines),
     )
 
 
@@ -263,10 +258,14 @@ def _summarise(lines: pl.DataFrame) -> Row:
     }
 
 
-def _rows(lines: pl.DataFrame) -> list[Row]:
+def _list_rows(lines: pl.DataFrame) -> list[Row]:
     """Return lines as rows, each with the causes that moved it."""
     rows = lines.with_columns(pl.col("causes").str.json_decode(pl.List(CAUSE))).to_dicts()
     for row in rows:
-        moved = [cause for cause in row["causes"] if abs(cause["factor"] - 1.0) > NO_FACTOR]
-        row["causes"] = [{k: v for k, v in cause.items() if v is not None} for cause in moved]
+        moved = []
+        for cause in row["causes"]:
+            known = {name: value for name, value in cause.items() if value is not None}
+            if abs(cause["factor"] - 1.0) > NO_FACTOR:
+                moved.append(known)
+        row["causes"] = moved
     return rows

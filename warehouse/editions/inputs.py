@@ -17,10 +17,8 @@ from warehouse.store.store import Store, fingerprint
 JUDGED: Final = ("doubts", "unusual")
 """What all other tows say of a tow."""
 
-NOT_INPUT: Final = (
-    "samples_path", "second_path", "inputs_sha256",
-    *JUDGED,
-    "hand_reason", "list_path", "list_line",
+NOT_INPUT: Final = JUDGED + (
+    "samples_path", "second_path", "inputs_sha256", "hand_reason", "list_path", "list_line",
 )  # fmt: skip
 """What a tow is called or said to be does not change its numbers; its doubts follow from others."""
 

@@ -109,11 +109,9 @@ def check_manifest(
     of it at the last rebuild.
     """
     own = find_manifest(store.editions / manifest.edition).name
-    found = [
-        *_find_impossible_fields(manifest, is_older=own != MANIFEST),
-        *_find_wrong_relations(manifest, manifests),
-        *_find_changed_facts(store, manifest),
-    ]
+    found = list(_find_impossible_fields(manifest, is_older=own != MANIFEST))
+    found += _find_wrong_relations(manifest, manifests)
+    found += _find_changed_facts(store, manifest)
     for field, message in found:
         yield Finding(manifest.edition, "altered", f"{own}: {field}", message)
 
@@ -178,7 +176,7 @@ def check_files(path: Path, manifest: Manifest) -> Iterator[Finding]:
     if not is_sealed or has_doubled_key((path / own).read_bytes()):
         yield Finding(name, "altered", own, say("{} was changed: its seal does not fit", own))
     present = {file.name for file in path.iterdir()}
-    for file in sorted(present - {*manifest.files, own}):
+    for file in sorted(present - manifest.files.keys() - {own}):
         yield Finding(name, "altered", file, say("{} was added after publication", file))
     for file, sha256 in sorted(manifest.files.items()):
         if file not in present:

@@ -57,15 +57,16 @@ from warehouse.store.editions import (
 from warehouse.store.store import Store
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
-LINE_SCHEMA: Final = {
-    **{n: c.dtype for n, c in Register.columns().items() if n != sheets.CODE_FIELD.column},
-    **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
-    INPUTS_HASH: pl.String(),
-    "basis": pl.String(),
-}
-"""Columns of a line of an edition, but for its verification code."""
+LINE_SCHEMA: Final = (
+    dtypes(Register)
+    | {name: dtypes(Boats)[name] for name in BOAT_FACTS}
+    | {INPUTS_HASH: pl.String(), "basis": pl.String()}
+)
+"""Columns of a line of an edition."""
+del LINE_SCHEMA[sheets.CODE_FIELD.column]  # is over the others
 
-NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+OF_CURVE: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "flags", "basis")
+"""What a line of which no tow counts is without."""
 MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
 """Tables that a method makes of the tows, and that an edition keeps."""
 
@@ -104,7 +105,7 @@ def make_edition(
 def make_printed(store: Store, manifest: Manifest, path: str) -> Edition:
     """Make the edition that a printed register of the archive gives."""
     lines = prints.printed_lines(store, path)
-    return Edition(manifest, {"register": _complete(store, lines, manifest, None)}, None)
+    return Edition(manifest, {"register": _complete_lines(store, lines, manifest, None)}, None)
 
 
 def make_again(store: Store, edition: Edition) -> Edition:
@@ -129,9 +130,11 @@ def make_again(store: Store, edition: Edition) -> Edition:
             raise BrokenPromiseError("{} does not say which printed register it is", path.name)
         return add_changes(store, make_printed(store, manifest, registers[0]))
     own = edition.tables["tows"]
-    judged = own.select("tow_id", *(name for name in JUDGED if name in own.columns))
-    tows, runs = (t.join(judged, on="tow_id", how="semi") for t in tables_of_today(store).values())
-    tows = tows.drop(JUDGED, strict=False).join(judged, on="tow_id", maintain_order="left")
+    judged = own.select("tow_id", pl.selectors.by_name(JUDGED, require_all=False))
+    today = tables_of_today(store)
+    runs = today["tow_runs"].join(own, on="tow_id", how="semi")
+    tows = today["tows"].join(own, on="tow_id", how="semi").drop(JUDGED, strict=False)
+    tows = tows.join(judged, on="tow_id", maintain_order="left")
     is_flagged = pl.col("flags").list.contains(NEWER_TOW_UNMEASURED)
     again = _recompute(
         store,
@@ -149,15 +152,14 @@ def make_again(store: Store, edition: Edition) -> Edition:
 
 def add_changes(store: Store, edition: Edition) -> Edition:
     """Add the comparison with the edition before, where there is one."""
-    previous = _previous(store, edition)
+    previous = _read_previous(store, edition)
     if previous is None:
         return edition
-    return replace(
-        edition, tables={**edition.tables, folder.CHANGES: compare(store, previous, edition)}
-    )
+    changes = compare(store, previous, edition)
+    return replace(edition, tables=edition.tables | {folder.CHANGES: changes})
 
 
-def _previous(store: Store, edition: Edition) -> Edition | None:
+def _read_previous(store: Store, edition: Edition) -> Edition | None:
     previous = edition.manifest.previous
     return None if previous is None else read_edition(store, previous)
 
@@ -176,7 +178,7 @@ def _recompute(
     tows, runs = inputs["tows"], inputs["tow_runs"]
     blocks = stack_blocks(intake.all_blocks(store), runs)
     made = recompute(method, tows, blocks, with_bands=False)
-    carried = _carried_lines(store, manifest, method, made.log_factors, tows)
+    carried = _read_carried_lines(store, manifest, method, made.log_factors, tows)
     draft = draft_register(
         made.curves, tows, crews, manifest.valid_from, method.validity, decisions, carried
     )
@@ -192,24 +194,18 @@ def _recompute(
         .join(own_hash, on=TOW_DAY, how="left", maintain_order="left")
         .with_columns(
             pl.coalesce(INPUTS_HASH, "printed_sha256").alias(INPUTS_HASH),
-            *(
-                pl.when(counts).then(pl.col(name)).alias(name)
-                for name in (*NUMBERS, "flags", "basis")
-            ),
+            pl.when(counts).then(pl.col(OF_CURVE)),
         )
     )
     lines = flag_unmeasured(lines, unmeasured, decisions)
     members = conform("ensemble", members_of(method, made))
-    tables = {
-        **inputs,
-        **{name: conform(name, getattr(made, name)) for name in MADE},
-        "ensemble": members.join(lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"),
-        "register": _complete(store, lines, manifest, method),
-    }
+    tables = inputs | {name: conform(name, getattr(made, name)) for name in MADE}
+    tables["ensemble"] = members.join(lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi")
+    tables["register"] = _complete_lines(store, lines, manifest, method)
     return Edition(manifest, tables, method)
 
 
-def _carried_lines(
+def _read_carried_lines(
     store: Store, manifest: Manifest, method: Method, log_factors: pl.DataFrame, tows: pl.DataFrame
 ) -> pl.DataFrame:
     """Return the lines of the printed edition that is carried over; none where none is.
@@ -218,7 +214,7 @@ def _carried_lines(
         MissingKnowledgeError: the edition is not a printed one.
     """
     if manifest.carried_from is None:
-        return pl.DataFrame(schema={**LINE_SCHEMA})
+        return pl.DataFrame(schema=pl.Schema(LINE_SCHEMA))
     printed = read_edition(store, manifest.carried_from)
     if printed.manifest.kind != "as_printed":
         raise MissingKnowledgeError(
@@ -228,7 +224,7 @@ def _carried_lines(
     return carried_lines(printed.register, log_factors, method, tows)
 
 
-def _complete(
+def _complete_lines(
     store: Store, lines: pl.DataFrame, manifest: Manifest, method: Method | None
 ) -> pl.DataFrame:
     """Add the facts of boats and the verification codes; check and sort."""
@@ -241,9 +237,7 @@ def _complete(
         as_of=pl.lit(manifest.valid_from),
     )
     missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
-    full = named.with_columns(missing).select(
-        pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items()
-    )
+    full = named.with_columns(missing).select(LINE_SCHEMA.keys()).cast(pl.Schema(LINE_SCHEMA))
     full = full.sort(LINE)
     codes = sheets.verification_codes(full, None if method is None else method.content_hash)
     coded = full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
@@ -273,7 +267,7 @@ def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
 def edition_files(store: Store, edition: Edition) -> dict[str, bytes]:
     """Write all files of an edition, last its manifest."""
     contents = sheet_files(store, edition)
-    for name, text in notes.texts(edition, _previous(store, edition)).items():
+    for name, text in notes.texts(edition, _read_previous(store, edition)).items():
         contents[name] = text.encode("utf-8")
     for name, frame in edition.tables.items():
         target = io.BytesIO()

@@ -46,13 +46,13 @@ def texts(edition: Edition, previous: Edition | None) -> dict[str, str]:
     if previous is not None:
         facts["changes"] = report(previous, edition, edition.tables[CHANGES])
     return {
-        name: _environment(language).get_template(name).render(facts) + "\n"
+        name: _make_environment(language).get_template(name).render(facts) + "\n"
         for name, language in LANGUAGES.items()
     }
 
 
 @cache
-def _environment(language: str) -> jinja2.Environment:
+def _make_environment(language: str) -> jinja2.Environment:
     """Return the template environment of a language, which writes its numbers and days."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES),

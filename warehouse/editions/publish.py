@@ -82,7 +82,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
             store.root,
             method.name,
         )
-    manifest = _manifest(store, terms, list_files(store), method, carry)
+    manifest = _make_manifest(store, terms, list_files(store), method, carry)
     return _write(store, make_edition(store, manifest, method))
 
 
@@ -106,7 +106,7 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Path:
     path = prints.printed_path(store, season)
     listed = store.read("listed_files").filter(pl.col("path") == path)
     sources = dict(listed.select("path", "sha256").rows())
-    manifest = _manifest(store, terms, sources, printed_in=season)
+    manifest = _make_manifest(store, terms, sources, printed_in=season)
     return _write(store, make_printed(store, manifest, path))
 
 
@@ -127,7 +127,7 @@ def drafted(
     """
     day = valid_from or reference_day(store.read("tows"), store.read("listed_races"))
     terms = Terms(draft_name(method.name), day, "", dt.date.today())
-    manifest = _manifest(store, terms, list_files(store), method)
+    manifest = _make_manifest(store, terms, list_files(store), method)
     return make_edition(store, manifest, method, counting)
 
 
@@ -179,7 +179,7 @@ def _check_terms(store: Store, terms: Terms) -> None:
         )
 
 
-def _manifest(
+def _make_manifest(
     store: Store,
     terms: Terms,
     sources: Mapping[str, str],

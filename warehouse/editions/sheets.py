@@ -91,7 +91,7 @@ REGISTER_FIELDS: Final = (
     Field("methode", "method"),
 )
 CODE_FIELD: Final = Field("controlecode", "verification_code")
-SHEET_FIELDS: Final = (*REGISTER_FIELDS, CODE_FIELD)
+SHEET_FIELDS: Final = REGISTER_FIELDS + (CODE_FIELD,)
 """The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
 
 
@@ -100,7 +100,7 @@ def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     words = _write_words(frame)
     columns = []
     for field in fields:
-        texts = [_printed(value, field) for value in words[field.column]]
+        texts = [_print_cell(value, field) for value in words[field.column]]
         columns.append(pl.Series(field.header, texts, pl.String))
     return pl.DataFrame(columns)
 
@@ -112,11 +112,14 @@ def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str
         frame: lines with the columns of `REGISTER_FIELDS` and `inputs_sha256`.
         method_hash: content hash of the method; None for a register as printed.
     """
+    codes = []
     lines = printed(frame, REGISTER_FIELDS).rows()
-    return [
-        _code([inputs, method_hash, *line])
-        for inputs, line in zip(frame["inputs_sha256"], lines, strict=True)
-    ]
+    for inputs, line in zip(frame["inputs_sha256"], lines, strict=True):
+        covered = [inputs, method_hash] + list(line)
+        text = json.dumps(covered, ensure_ascii=False, separators=(",", ":"))
+        digest = hashlib.sha256(text.encode("utf-8")).digest()
+        codes.append(base64.b32encode(digest).decode("ascii")[:CODE_LENGTH])
+    return codes
 
 
 def encode_csv(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
@@ -139,10 +142,10 @@ def write_workbook(frame: pl.DataFrame, fields: Sequence[Field], made_on: dt.dat
     import xlsxwriter  # type: ignore[import-untyped,unused-ignore]  # noqa: PLC0415 - 0.15 s
 
     target = io.BytesIO()
-    formats: dict[Any, str] = {field.header: _number_format(field) for field in fields}
+    formats: dict[Any, str] = {field.header: _choose_number_format(field) for field in fields}
     with xlsxwriter.Workbook(target, {"in_memory": True, **TEXT_STAYS_TEXT}) as book:
         book.set_properties({"created": dt.datetime.combine(made_on, dt.time())})
-        _cells(frame, fields).write_excel(
+        _tabulate_cells(frame, fields).write_excel(
             book, SHEET, column_formats=formats, autofit=True, freeze_panes=(1, 1)
         )
     return target.getvalue()
@@ -165,16 +168,18 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
     if book.sheetnames not in ([SHEET], [SHEET, OLDER_SECOND_SHEET]):
         return False
     sheet = book[SHEET]
-    shapes = [*sheet.row_dimensions.values(), *sheet.column_dimensions.values()]
+    shapes = list(sheet.row_dimensions.values()) + list(sheet.column_dimensions.values())
     sizes = [getattr(shape, "height", None) for shape in shapes]
     sizes += [getattr(shape, "width", None) for shape in shapes]
     is_hidden = any(shape.hidden for shape in shapes) or 0 in sizes
     if is_hidden or sheet.sheet_state != "visible" or sheet.conditional_formatting:
         return False
-    cells = _cells(frame, fields)
-    formats = [_number_format(field) for field in fields]
+    cells = _tabulate_cells(frame, fields)
+    formats = [_choose_number_format(field) for field in fields]
     expected: list[list[object]] = [list(cells.columns)]
-    expected += [[_read_cell(value) for value in row] for row in cells.rows()]
+    for row in cells.iter_rows():
+        read = [_read_cell(value) for value in row]
+        expected.append(read)
     shown = []
     is_formatted = True
     for place, row in enumerate(sheet.iter_rows()):
@@ -184,7 +189,7 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
     return shown == expected and is_formatted
 
 
-def _cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
+def _tabulate_cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     """Return the values of the cells of a workbook, by header."""
     words = _write_words(frame)
     cells = []
@@ -202,7 +207,7 @@ def _read_cell(value: object) -> object:
     return None if value == "" else value
 
 
-def _number_format(field: Field) -> str:
+def _choose_number_format(field: Field) -> str:
     if field.type == "number":
         return "0." + "0" * field.decimals if field.decimals else "0"
     return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
@@ -218,16 +223,10 @@ def _write_words(frame: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _printed(value: Any, field: Field) -> str:
+def _print_cell(value: Any, field: Field) -> str:
     if value is None:
         return ""
     if field.type == "number":
         return f"{value:.{field.decimals}f}".replace(".", ",")
     text = str(value)
     return FORMULA.sub(r"\1\2'\3", text) if field.type == "string" else text
-
-
-def _code(parts: Sequence[str | None]) -> str:
-    text = json.dumps(parts, ensure_ascii=False, separators=(",", ":"))
-    digest = hashlib.sha256(text.encode("utf-8")).digest()
-    return base64.b32encode(digest).decode("ascii")[:CODE_LENGTH]

@@ -63,7 +63,7 @@ ROW_NAMES: Final = {
 }
 """Tables of which every row that differs is named, and how; inputs first."""
 
-FOLLOWING: Final = ("inputs_sha256", *JUDGED)
+FOLLOWING: Final = ("inputs_sha256",) + JUDGED
 """What the tables of an edition say of a tow that follows from the rest, or from other tows."""
 
 
@@ -134,7 +134,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
     checked = [CheckedEdition(name, manifest.kind) for name, manifest in manifests.items()]
     by_other_code = head is not None and head == seal
     try:
-        with _archive_tables(store, archive if afresh else None) as again:
+        with _read_archive_again(store, archive if afresh else None) as again:
             for place, edition in enumerate(checked):
                 if edition.edition not in can_be_read:
                     continue
@@ -149,7 +149,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
 
 
 @contextmanager
-def _archive_tables(store: Store, archive: Path | None) -> Iterator[Store]:
+def _read_archive_again(store: Store, archive: Path | None) -> Iterator[Store]:
     """Yield a data folder with the same editions, made of the archive's files alone."""
     if archive is None:
         yield store
@@ -214,34 +214,31 @@ def _compare_rows(edition: Edition, again: Edition, table: str) -> Iterator[Find
         known = [n for n in was.columns if n in now.columns and n not in FOLLOWING]
         facts = [name for name in known if not name.endswith("_sha256")]
         was, now = was.select(facts), now.select(facts)
-    elif _has_other_tows(edition, again):
-        why = say("tows that went into it changed")
+    elif "tows" in edition.tables:
+        n_same = len(find_same_tows(edition.tables, again.tables))
+        if n_same < edition.tables["tows"].height:
+            why = say("tows that went into it changed")
     for row in differences(was, now, TABLES[table].primary_key()).iter_rows(named=True):
-        changed = (f"{n} {_text(row[n])} > {_text(row[f'{n} now'])}" for n in row["columns"])
+        changed = [
+            f"{n} {_format_value(row[n])} > {_format_value(row[f'{n} now'])}"
+            for n in row["columns"]
+        ]
         message = say("made again, {}: {}", ", ".join(changed), why)
         yield Finding(edition.manifest.edition, kind, ROW_NAMES[table].format(**row), message)
-    yield from _find_added_columns(edition, table, was, now)
-
-
-def _find_added_columns(
-    edition: Edition, table: str, was: pl.DataFrame, now: pl.DataFrame
-) -> Iterator[Finding]:
-    """Find columns that an edition has and no edition that is made now."""
-    for column in (name for name in was.columns if name not in now.columns):
-        message = say("it has a column {}, which comes from nothing", column)
-        yield Finding(edition.manifest.edition, "differs", table + PARQUET, message)
-
-
-def _has_other_tows(edition: Edition, again: Edition) -> bool:
-    tows = edition.tables.get("tows")
-    return tows is not None and len(find_same_tows(edition.tables, again.tables)) < tows.height
+    for column in was.columns:
+        if column not in now.columns:
+            message = say("it has a column {}, which comes from nothing", column)
+            yield Finding(edition.manifest.edition, "differs", table + PARQUET, message)
 
 
 def _compare_table(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
     """Find the columns of a table that come out otherwise."""
     was, now = edition.tables.get(table, again.tables[table].clear()), again.tables[table]
-    numbers = was.drop("causes", strict=False), now.drop("causes", strict=False)
-    rows = differences(*numbers, TABLES[table].primary_key())
+    rows = differences(
+        was.drop("causes", strict=False),
+        now.drop("causes", strict=False),
+        TABLES[table].primary_key(),
+    )
     columns = set(rows["columns"].explode())
     if table == CHANGES and differences(explode_causes(was), explode_causes(now), LINE).height:
         columns.add("causes")  # a text with numbers, which are compared as such
@@ -271,7 +268,7 @@ def differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.
         The columns of both (`name` and `name now`), `there` and `there now`: null where there is no
         such row; and `columns`: those that differ.
     """
-    names = list(dict.fromkeys([*was.columns, *now.columns]))
+    names = list(dict.fromkeys(was.columns + now.columns))
     numbered = []
     for frame in (was, now):
         lacking = {name: pl.lit(None) for name in names if name not in frame.columns}
@@ -279,21 +276,26 @@ def differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.
         numbered.append(frame.with_columns(**lacking, row=row, there=pl.lit(value=True)))
     pairs = numbered[0].join(
         numbered[1],
-        on=[*key, "row"],
+        on=list(key) + ["row"],
         how="full",
         coalesce=True,
         suffix=" now",
         nulls_equal=True,
         maintain_order="left_right",
     )
-    unequal = {name: _is_unequal(pairs, name) for name in ("there", *names) if name not in key}
-    columns = (pl.when(differs).then(pl.lit(name)) for name, differs in unequal.items())
-    return pairs.filter(pl.any_horizontal(unequal.values())).with_columns(
+    unequal = []
+    columns = []
+    for name in ["there"] + names:
+        if name not in key:
+            is_unequal = _compare_columns(pairs, name)
+            unequal.append(is_unequal)
+            columns.append(pl.when(is_unequal).then(pl.lit(name)))
+    return pairs.filter(pl.any_horizontal(unequal)).with_columns(
         columns=pl.concat_list(columns).list.drop_nulls()
     )
 
 
-def _is_unequal(pairs: pl.DataFrame, name: str) -> pl.Expr:
+def _compare_columns(pairs: pl.DataFrame, name: str) -> pl.Expr:
     one, other = pl.col(name), pl.col(f"{name} now")
     if not (pairs.schema[name].is_float() and pairs.schema[f"{name} now"].is_float()):
         return one.ne_missing(other)
@@ -303,5 +305,5 @@ def _is_unequal(pairs: pl.DataFrame, name: str) -> pl.Expr:
     return (one.is_null() != other.is_null()) | is_far.fill_null(value=False)
 
 
-def _text(value: object) -> str:
+def _format_value(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value or "nothing")

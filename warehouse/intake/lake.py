@@ -80,7 +80,7 @@ def read_tows(
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
     def read(tow: Row) -> Row:
-        return _bring_in(store, root, tow, runs_of[tow["tow_id"],], profile, hashes)
+        return _bring_in_tow(store, root, tow, runs_of[tow["tow_id"],], profile, hashes)
 
     workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
     with ThreadPoolExecutor(workers) as pool:
@@ -99,17 +99,19 @@ def all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
         DamagedFileError: samples and blocks of a tow were removed; they are read again.
     """
     sound = index.filter(pl.col("blocks_key").is_not_null()).sort("season", "tow_id")
-    paths = [store.blocks_path(*tow) for tow in sound.select("season", "blocks_key").rows()]
-    if not all(path.exists() for path in paths):
-        raise DamagedFileError(store.table_path("samples"))
-    frames = [read_parquet(path) for path in paths]
+    frames = []
+    for season, blocks_key in sound.select("season", "blocks_key").iter_rows():
+        path = store.blocks_path(season, blocks_key)
+        if not path.exists():
+            raise DamagedFileError(store.table_path("samples"))
+        frames.append(read_parquet(path))
     if not frames:
         return pl.DataFrame(schema=BLOCK_SCHEMA)
     tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
     return pl.concat(frames).insert_column(0, sound["tow_id"].gather(tow))
 
 
-def _bring_in(
+def _bring_in_tow(
     store: Store,
     root: Path,
     tow: Row,
@@ -148,7 +150,12 @@ def _bring_in(
             raise
         note(store.root, tow["tow_id"], format_traceback(error))
         message = sentence(tow["tow_id"], shorten_error(error))
-        fault = Fault(tow["samples_path"], tow["tow_id"], None, UNFORESEEN, message)
+        fault = Fault(
+            path=tow["samples_path"],
+            tow_id=tow["tow_id"],
+            reason_code=UNFORESEEN,
+            message=message,
+        )
     else:
         return row | facts | {"blocks_key": blocks_key, "samples": count_rows(path)}
     found = fault.to_row()

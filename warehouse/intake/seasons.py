@@ -5,10 +5,9 @@ Reading one season's files is `warehouse.intake.lake`.
 
 import dataclasses
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from stat import S_ISDIR
 from typing import Final
 
 import polars as pl
@@ -31,10 +30,9 @@ from warehouse.intake import lake
 from warehouse.store.store import Store, fingerprint
 from warehouse.store.unforeseen import note
 
-LISTED: Final = ("boats", "tows", "runs", "windows", "acceptances")
 INDEXED: Final = (
-    *(f"listed_{name}" for name in (*LISTED, "files", "races")),
-    "printed_registers", "list_faults", "about_archive", "season_profiles",
+    "listed_boats", "listed_tows", "listed_runs", "listed_windows", "listed_files", "listed_races",
+    "listed_acceptances", "printed_registers", "list_faults", "about_archive", "season_profiles",
 )  # fmt: skip
 """What is kept of the archive's lists."""
 
@@ -50,26 +48,29 @@ def index(store: Store, root: Path) -> dict[str, pl.DataFrame]:
     hashes.save(store.file_hashes)
     races, race_faults = read_races(root)
     printed, register_faults = read_published_registers(root)
-    all_faults = (*listed.faults, *race_faults, *register_faults)
+    all_faults = list(listed.faults) + race_faults + register_faults
     for fault in all_faults:
         if isinstance(fault, Failure):
             note(store.root, (fault.tow_id or fault.path).replace(" ", "-"), fault.trace)
     about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
     about |= listed.profiles.publication.model_dump()
-    seasons = listed.tows["season"].unique().sort().to_list()
-    told = ((s, dataclasses.asdict(listed.profiles.find(s))) for s in seasons)
+    profiles = []
+    for season in listed.tows["season"].unique().sort():
+        profile = dataclasses.asdict(listed.profiles.find(season))
+        profiles.append((season, fingerprint(profile)))
+    schema = {"season": pl.Int64, "profile": pl.String}
     return {
-        **{f"listed_{name}": getattr(listed, name) for name in LISTED},
+        "listed_boats": listed.boats,
+        "listed_tows": listed.tows,
+        "listed_runs": listed.runs,
+        "listed_windows": listed.windows,
+        "listed_acceptances": listed.acceptances,
         "listed_files": listed.files,
         "listed_races": races,
         "printed_registers": printed,
         "list_faults": fault_frame(all_faults),
         "about_archive": frame_of(AboutArchive, [about]),
-        "season_profiles": pl.DataFrame(
-            [(season, fingerprint(profile)) for season, profile in told],
-            schema={"season": pl.Int64, "profile": pl.String},
-            orient="row",
-        ),
+        "season_profiles": pl.DataFrame(profiles, schema, orient="row"),
     }
 
 
@@ -106,25 +107,22 @@ Listing = dict[str, list[int]]
 """Size in bytes and time of the last change in ns of every file, by path within the archive."""
 
 
-def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:
-    """Yield what the system knows of each file and folder of an archive, by path within it."""
-    for folder, folders, files in os.walk(root):
-        for path in (Path(folder, name) for name in (*folders, *files)):
-            with suppress(FileNotFoundError):
-                yield path.relative_to(root).as_posix(), path.stat()
-
-
 def listing(root: Path) -> Listing:
     """Return the files of an archive as they lie there now; none is opened.
 
     Raises:
         MissingKnowledgeError: there is no such folder, or nothing in it: a disk not mounted.
     """
-    files = {
-        path: [stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns]
-        for path, stat in _stats(root)
-        if not S_ISDIR(stat.st_mode) and not path.startswith(".") and "/." not in path
-    }
+    files = {}
+    for folder, _, names in os.walk(root):
+        for name in names:
+            path = Path(folder, name)
+            place = path.relative_to(root).as_posix()
+            if place.startswith(".") or "/." in place:
+                continue
+            with suppress(FileNotFoundError):
+                stat = path.stat()
+                files[place] = [stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns]
     if not files:
         raise MissingKnowledgeError("there is no file at {}: is its disk there?", root)
     return files

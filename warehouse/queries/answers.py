@@ -38,7 +38,7 @@ def current_edition(views: Views) -> str:
     published = views.table("editions").sort("valid_from", "published_on", "edition")["edition"]
     drafts = set(views.table("register")["edition"]) - set(published)
     draft = default_method(sorted(drafts)) if drafts else ""
-    return newest_edition([*sorted(drafts), *published], draft)
+    return newest_edition(sorted(drafts) + published.to_list(), draft)
 
 
 def line_changes(views: Views) -> pl.DataFrame:
@@ -50,17 +50,15 @@ def line_changes(views: Views) -> pl.DataFrame:
         (`old_log_known`, `new_log_known`).
     """
     kept, register = views.table("register_changes"), views.table("register")
-    pairs = kept.select(PAIR).unique().sort(PAIR).rows()
     compared_pairs = [compare_lines(register.clear(), register.clear())]
-    for old, new in pairs:
-        compared_pairs.append(
-            compare_lines(register.filter(edition=old), register.filter(edition=new))
-        )
+    for old, new in kept.select(PAIR).unique().sort(PAIR).iter_rows():
+        before, after = register.filter(edition=old), register.filter(edition=new)
+        compared_pairs.append(compare_lines(before, after))
     both = pl.concat(compared_pairs)
-    beside = both.drop(set(kept.columns) - {*PAIR, *LINE})
-    key = [*PAIR, *LINE]
+    key = PAIR + LINE
+    beside = both.drop(set(kept.columns) - set(key))
     changes = kept.join(beside, on=key, how="left", nulls_equal=True, maintain_order="left")
-    return _named(views, changes)
+    return _add_names(views, changes)
 
 
 def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None) -> pl.DataFrame:
@@ -74,13 +72,13 @@ def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None
     """
     from warehouse.editions.compare import compare  # noqa: PLC0415 - it may recompute tows
 
-    before = _edition(views, old, valid_from)
-    after = _edition(views, new, valid_from)
+    before = _find_edition(views, old, valid_from)
+    after = _find_edition(views, new, valid_from)
     lines = compare(views.store, before, after)
-    return _named(views, lines.drop("name", "old_status", "new_status"))
+    return _add_names(views, lines.drop("name", "old_status", "new_status"))
 
 
-def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
+def _find_edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
     """Return a published edition, or what publishing a draft would give."""
     known = views.table("register")["edition"].unique()
     if name not in known:
@@ -93,18 +91,24 @@ def _edition(views: Views, name: str, valid_from: dt.date | None) -> Edition:
     return drafted(views.store, method, valid_from)
 
 
-def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
+def _add_names(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
     """Add name and type of the boat by the newer edition, and `log_known` of both."""
     boats = views.register().select("edition", pl.col(LINE), "name", "boat_type")
     known = log_known(views)
     for side, edition in (("new", "to_edition"), ("old", "from_edition")):
-        names = {name: f"{side}_{name}" for name in ("name", "boat_type", "log_known")}
-        for frame, key in ((boats, LINE), (known, ())):
-            mine = frame.rename({"edition": edition} | names, strict=False)
-            changes = changes.join(mine, on=[edition, *key], how="left", maintain_order="left")
-        changes = changes.rename({f"{side}_rank": f"{side}_speed_rank"})
-    of_either = {n: pl.coalesce(f"new_{n}", f"old_{n}") for n in ("name", "boat_type")}
-    return changes.with_columns(**of_either).drop("^(old|new)_(name|boat_type)$")
+        named = boats.rename(
+            {"edition": edition, "name": f"{side}_name", "boat_type": f"{side}_boat_type"}
+        )
+        with_log = known.rename({"edition": edition, "log_known": f"{side}_log_known"})
+        changes = (
+            changes.join(named, on=(edition,) + LINE, how="left", maintain_order="left")
+            .join(with_log, on=edition, how="left", maintain_order="left")
+            .rename({f"{side}_rank": f"{side}_speed_rank"})
+        )
+    return changes.with_columns(
+        name=pl.coalesce("new_name", "old_name"),
+        boat_type=pl.coalesce("new_boat_type", "old_boat_type"),
+    ).drop("^(old|new)_(name|boat_type)$")
 
 
 def log_known(views: Views) -> pl.DataFrame:
@@ -161,15 +165,16 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     compared = changes.drop("name", "boat_type", "to_edition", "new_log_known")
     known = log_known(views).rename({"log_known": "new_log_known"})
     due = views.table("due_list").select("method", pl.col(LINE), "tow_speed_m_s", "speed_reason")
-    behind = _behind(views, edition)
-    logs = behind("log_factors").select(
+    tables = _choose_tables(views, edition)
+    logs = tables("log_factors").select(
         "method", "season", log_factor="factor", log_lo="lo", log_hi="hi", log_source="source"
     )
-    tows = behind("tows").select("tow_id", "season", "altered")
+    tows = tables("tows").select("tow_id", "season", "altered")
     old_days = views.table("register").select(
         pl.col(LINE), from_edition="edition", old_tow_date="tow_date"
     )
-    predicted = behind("predicted_cw").select(
+    best = _select_best_estimates(tables)
+    predicted = tables("predicted_cw").select(
         "method", "tow_id", "predicted_cw_kg_m", "predicted_lo_kg_m", "predicted_hi_kg_m",
         "disagrees", predicted_speed_m_s="standard_speed_m_s", cw_there_kg_m="cw_kg_m",
     )  # fmt: skip
@@ -177,19 +182,25 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .join(known, on="edition", how="left", maintain_order="left")
         .join(tows, on="tow_id", how="left", maintain_order="left")
-        .join(old_days, on=["from_edition", *LINE], how="left", maintain_order="left")
-        .join(due, on=["method", *LINE], how="left", maintain_order="left")
-        .join(_best_estimates(behind), on=["method", "tow_id"], how="left", maintain_order="left")
+        .join(old_days, on=("from_edition",) + LINE, how="left", maintain_order="left")
+        .join(due, on=("method",) + LINE, how="left", maintain_order="left")
+        .join(best, on=["method", "tow_id"], how="left", maintain_order="left")
         .join(logs, on=["method", "season"], how="left", maintain_order="left")
         .join(predicted, on=["method", "tow_id"], how="left", maintain_order="left")
     )
-    return _add_places(joined)
+    like = ("boat_type", "crew_class")
+    old_rank, new_rank = pl.col("old_speed_rank"), pl.col("new_speed_rank")
+    return joined.with_columns(
+        old_type_place=old_rank.rank("min").over(like).cast(pl.Int32),
+        new_type_place=new_rank.rank("min").over(like).cast(pl.Int32),
+        type_size=new_rank.count().over(like).cast(pl.Int32),
+    )
 
 
 _Tables = Callable[[str], pl.DataFrame]
 
 
-def _behind(views: Views, edition: str) -> _Tables:
+def _choose_tables(views: Views, edition: str) -> _Tables:
     """Return the tables behind a register by name: its own of an edition, today's of a draft."""
     if edition.startswith(DRAFT):
         return views.table
@@ -199,17 +210,17 @@ def _behind(views: Views, edition: str) -> _Tables:
     return lambda name: own[name] if name in own else TABLES[name].create_empty()
 
 
-def _best_estimates(behind: _Tables) -> pl.DataFrame:
+def _select_best_estimates(tables: _Tables) -> pl.DataFrame:
     """Return the best estimate of each tow, and how far both numbers moved since its last."""
     key = ("method", "tow_id")
-    best = behind("curves").select(*key, "^cw_best_.*$", kept=_BEST_TO_MEASURED)
+    best = tables("curves").select(pl.col(key), "^cw_best_.*$", kept=_BEST_TO_MEASURED)
     mine = pl.col("tow_id") == pl.col("rests_on")  # shares of next to nothing are left out
     own = (
-        behind("best_estimate_weights")
+        tables("best_estimate_weights")
         .group_by(key, maintain_order=True)
         .agg(own_weight=pl.col("weight").filter(mine).sum())
     )
-    pairs = behind("repeat_pairs").select(*key, "tow_id_before", "season_before", "ln_ratio")
+    pairs = tables("repeat_pairs").select(pl.col(key), "tow_id_before", "season_before", "ln_ratio")
     before = best.select("method", tow_id_before="tow_id", kept_before="kept")
     moved = pl.col("ln_ratio").exp()
     return (
@@ -240,22 +251,6 @@ def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     return {(str(method), int(season)): f.to_dicts() for (method, season), f in by_season.items()}
 
 
-def _add_places(lines: pl.DataFrame) -> pl.DataFrame:
-    """Add the place of each line among the boats of its type and class."""
-    like = ("boat_type", "crew_class")
-    places = (
-        pl.col(f"{side}_speed_rank")
-        .rank("min")
-        .over(like)
-        .cast(pl.Int32)
-        .alias(f"{side}_type_place")
-        for side in ("old", "new")
-    )
-    return lines.with_columns(
-        *places, pl.col("new_speed_rank").count().over(like).cast(pl.Int32).alias("type_size")
-    )
-
-
 def select_own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
     """Return race results under two editions, with how many of a class have a place in both."""
     races = views.ask("races").filter(from_edition=old or "", to_edition=edition)
@@ -270,12 +265,11 @@ def race_chances(views: Views, old: str, new: str) -> dict[tuple[str, str], floa
         By race with its day, and class; None where the new register has no ensemble.
     """
     winners, _ = replayed(views, old, new)
-    return {
-        (f"{race} {day}", crew_class): chance
-        for race, day, crew_class, chance in winners.select(
-            "race", "race_date", "crew_class", "change_probability"
-        ).rows()
-    }
+    chances = {}
+    for row in winners.iter_rows(named=True):
+        race = f"{row['race']} {row['race_date']}"
+        chances[race, row["crew_class"]] = row["change_probability"]
+    return chances
 
 
 def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int, int]]:
@@ -290,14 +284,9 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
     after = replay(history.filter(edition=new), results, RaceRules())
     ranked = race_changes(before, after).drop_nulls("new_rank")
     moved = ranked.filter(pl.col("old_rank") != pl.col("new_rank")).height
-    members = _members(views, new)
+    members = pl.DataFrame()
+    if not new.startswith(DRAFT):
+        members = read_edition(views.store, new).tables.get("ensemble", members)
+    elif views.store.read_fingerprint("ensemble") is not None:
+        members = views.store.read("ensemble", new.removeprefix(DRAFT))
     return winner_changes(before, after, members), (moved, ranked.height)
-
-
-def _members(views: Views, edition: str) -> pl.DataFrame:
-    """Return the ensemble of a draft from the lake, of an edition from its folder; else none."""
-    if not edition.startswith(DRAFT):
-        return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())
-    method = edition.removeprefix(DRAFT)
-    is_there = views.store.read_fingerprint("ensemble") is not None
-    return views.store.read("ensemble", method) if is_there else pl.DataFrame()

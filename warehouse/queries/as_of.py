@@ -47,7 +47,7 @@ def overlay_register(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) 
         "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
     }
     for name, frame in made.items():
-        _lay(db, name, frame)
+        _lay_over(db, name, frame)
 
 
 def overlay_editions(db: duckdb.DuckDBPyConnection, store: Store) -> None:
@@ -56,10 +56,10 @@ def overlay_editions(db: duckdb.DuckDBPyConnection, store: Store) -> None:
     for name, published in published_tables(store).items():
         edition = "to_edition" if name == CHANGES else "edition"
         drafts = pl.DataFrame(db.table(name).pl()).filter(~pl.col(edition).is_in(editions))
-        _lay(db, name, pl.concat([conform(name, drafts), published]))
+        _lay_over(db, name, pl.concat([conform(name, drafts), published]))
 
 
-def _lay(db: duckdb.DuckDBPyConnection, name: str, frame: pl.DataFrame) -> None:
+def _lay_over(db: duckdb.DuckDBPyConnection, name: str, frame: pl.DataFrame) -> None:
     db.register("frame", frame.select(TABLES[name].column_names()).to_arrow())
     db.execute(f'CREATE OR REPLACE TEMP TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
     db.unregister("frame")
@@ -73,18 +73,18 @@ def register_on(
     A line whose tow was made later is listed as never towed. The verification code is of the
     published line, and stands only where that line is the one that counted.
     """
-    key = ["edition", *LINE]
-    codes = register.select(*key, "tow_id", "verification_code")
+    key = ("edition",) + LINE
+    codes = register.select(pl.col(key), "tow_id", "verification_code")
     counted = (
-        lines_on_days(history.sort(*key, "position"), [day], key)
+        lines_on_days(history.sort(key + ("position",)), [day], key)
         .join(tows.select("tow_id", pl.col(SIZES)), on="tow_id", how="left", maintain_order="left")
-        .join(codes, on=[*key, "tow_id"], how="left", nulls_equal=True, maintain_order="left")
+        .join(codes, on=key + ("tow_id",), how="left", nulls_equal=True, maintain_order="left")
     )
     later = pl.col("tow_date").is_not_null()
-    rest = register.join(counted, on=key, how="anti").with_columns(
-        pl.when(later).then(pl.lit(NOT_YET)).otherwise("status").alias("status"),
-        *(pl.lit(None, register.schema[name]).alias(name) for name in (*CURVE_COLUMNS, *SIZES)),
-        pl.lit(None, pl.String).alias("verification_code"),
+    without_tow = register.join(counted, on=key, how="anti").select(
+        pl.exclude(CURVE_COLUMNS + SIZES + ("verification_code", "as_of", "status")),
+        status=pl.when(later).then(pl.lit(NOT_YET)).otherwise("status"),
     )
-    both = pl.concat([counted.drop("as_of"), rest.drop("as_of")], how="diagonal_relaxed")
-    return both.with_columns(pl.lit(day).alias("as_of")).select(register.columns).sort(key)
+    # What the lines without a tow lack becomes null.
+    both = pl.concat([counted.drop("as_of"), without_tow], how="diagonal_relaxed")
+    return both.with_columns(as_of=pl.lit(day)).select(register.columns).sort(key)

@@ -101,16 +101,16 @@ def assess(store: Store, archive: Path, tow_id: str, method: Method) -> Assessme
             )
         read_archive(copy, archive)
         if copy.read("listed_tows").filter(tow_id=tow_id).is_empty():
-            raise _not_usable(tow_id, copy.read("list_faults"))
+            raise _make_unusable_error(tow_id, copy.read("list_faults"))
         runs = stack_blocks(intake.all_blocks(copy), intake.runs_with_windows(copy))
         made = recompute(method, add_boats(copy.read("tows"), copy.read("boats")), runs)
         for name, frame in vars(made).items():
             if name in TABLES:
                 copy.write(name, conform(name, frame))
-        return _assessment(copy, tow_id, method.name)
+        return _assess_tow(copy, tow_id, method.name)
 
 
-def _not_usable(tow_id: str, faults: pl.DataFrame) -> MissingKnowledgeError:
+def _make_unusable_error(tow_id: str, faults: pl.DataFrame) -> MissingKnowledgeError:
     """Return why a tow cannot be used: what was set aside of it, or that no list names it."""
     in_language = "message_nl" if LANGUAGE.get() == "nl" else "message"
     own = faults.filter(tow_id=tow_id)[in_language].to_list()
@@ -123,14 +123,14 @@ def _not_usable(tow_id: str, faults: pl.DataFrame) -> MissingKnowledgeError:
     )
 
 
-def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
+def _assess_tow(store: Store, tow_id: str, method: str) -> Assessment:
     tows, curves = intake.typed_tows(store), store.read("curves", method)
     set_aside = store.read("quarantine").filter(tow_id=tow_id)
     own = tows.filter(tow_id=tow_id).join(
         store.read("boats").select("fsn_no", "name"), on="fsn_no", how="left", maintain_order="left"
     )
     if own.is_empty():
-        raise _not_usable(tow_id, set_aside)
+        raise _make_unusable_error(tow_id, set_aside)
     tow = own.row(0, named=True)
     dated = tows.filter(pl.col("tow_id") != tow_id, pl.col("tow_date") <= tow["tow_date"])
     is_earlier = (pl.col("tow_date") < tow["tow_date"]) | (pl.col("tow_id") < tow_id)
@@ -138,8 +138,10 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
     others = _find_cw_at_speed(
         curves.join(of_tows, on="tow_id", maintain_order="left"), tow["declared_speed_m_s"]
     ).sort("tow_date", "tow_id")
-    own_before = _newest(others.filter(is_earlier, **{name: tow[name] for name in LINE}))
-    boat_before = _newest(dated.filter(is_earlier, fsn_no=tow["fsn_no"]).sort("tow_date", "tow_id"))
+    own_before = _get_newest(others.filter(is_earlier, **{name: tow[name] for name in LINE}))
+    boat_before = _get_newest(
+        dated.filter(is_earlier, fsn_no=tow["fsn_no"]).sort("tow_date", "tow_id")
+    )
     every_run = store.read("run_points", method)
     measured = measure_runs(curves, every_run)
     run_points = every_run.filter(tow_id=tow_id).sort("run")
@@ -156,7 +158,7 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
             assessments=assessments,
             others_of_season=of_season.filter(pl.col("tow_id") != tow_id),
             set_aside=set_aside,
-            not_planned=_runs_not_planned(store, tow_id),
+            not_planned=_find_unplanned_runs(store, tow_id),
             boat_before=boat_before,
             line_before=own_before,
         )
@@ -192,12 +194,12 @@ def _assessment(store: Store, tow_id: str, method: str) -> Assessment:
     )
 
 
-def _newest(rows: pl.DataFrame) -> Row | None:
+def _get_newest(rows: pl.DataFrame) -> Row | None:
     """Return the last of rows that are sorted by day."""
     return rows.row(-1, named=True) if rows.height else None
 
 
-def _runs_not_planned(store: Store, tow_id: str) -> pl.DataFrame:
+def _find_unplanned_runs(store: Store, tow_id: str) -> pl.DataFrame:
     """Return the runs in the samples of a tow that its plan does not know, with their log speed."""
     planned = store.read("listed_runs").filter(tow_id=tow_id)["run"]
     blocks = intake.all_blocks(store, ["tow_id", "run", "n", "log1_v"]).filter(tow_id=tow_id)
@@ -228,7 +230,7 @@ def propose_use_of_runs(assessment: pl.DataFrame, planned: pl.DataFrame) -> list
     candidates = {row["runs"][0]: row["instead_of"] for row in extra.iter_rows(named=True)}
     ways: list[dict[int, int]] = []
     if len(candidates) == 1:
-        (run, alike), *_ = candidates.items()
+        run, alike = next(iter(candidates.items()))
         wrong = [one for one in alike if one in redo]
         ways = [{one: run} for one in (wrong if len(wrong) == 1 else alike)]
     else:
@@ -238,10 +240,10 @@ def propose_use_of_runs(assessment: pl.DataFrame, planned: pl.DataFrame) -> list
             if free:
                 way[free[0]] = run
         ways = [way]
-    return [_use_runs(known, way) for way in ways]
+    return [_write_use_of_runs(known, way) for way in ways]
 
 
-def _use_runs(known: pl.DataFrame, replaced_by: Mapping[int, int]) -> Row:
+def _write_use_of_runs(known: pl.DataFrame, replaced_by: Mapping[int, int]) -> Row:
     """Return the line of the list and the plan with which runs take the places of others."""
     targets = dict(known.select("run", "target_speed_ratio").iter_rows())
     directions = dict(known.select("run", "direction").iter_rows())
@@ -275,5 +277,5 @@ def _find_cw_at_speed(curves: pl.DataFrame, speed_m_s: float) -> pl.DataFrame:
     sound = curves.filter(pl.col("status") != "rejected").drop_nulls("a_kg_m")
     b = sound["b_m_s"].fill_null(np.inf)
     cw = pl.lit(pl.Series(curve.cw(sound["a_kg_m"], curve.s_of_b(b), speed_m_s)))
-    ends = {name: cw * pl.col(name) / pl.col("cw_kg_m") for name in ("cw_lo_kg_m", "cw_hi_kg_m")}
-    return sound.with_columns(**ends, cw_kg_m=cw).filter(pl.col("cw_kg_m").is_finite())
+    ends = pl.col("cw_lo_kg_m", "cw_hi_kg_m") * cw / pl.col("cw_kg_m")
+    return sound.with_columns(ends, cw_kg_m=cw).filter(pl.col("cw_kg_m").is_finite())

@@ -94,29 +94,29 @@ def reported_path(store: Store) -> Path:
 
 def change_report(store: Store) -> ChangeReport:
     """Return the changes of the tables since the last report."""
-    return _compare_states(store, _reported_state(store), store.contents(DATABASE_TABLE))
+    return _compare_states(store, _read_reported_state(store), store.contents(DATABASE_TABLE))
 
 
 def is_reported(store: Store) -> bool:
     """Return whether the tables are those that were reported on."""
-    return _reported_state(store) == store.contents(DATABASE_TABLE)
+    return _read_reported_state(store) == store.contents(DATABASE_TABLE)
 
 
 def remember(store: Store) -> None:
     """Keep what the next report compares with."""
     if not is_reported(store):
         with write_folder_beside(reported_path(store)) as beside:
-            for name, frame in _today(store).items():
+            for name, frame in _read_today(store).items():
                 write_parquet(frame, beside / f"{name}.parquet")
 
 
-def _reported_state(store: Store) -> str | None:
+def _read_reported_state(store: Store) -> str | None:
     """Return the contents of the database that was reported on; None where nothing was."""
-    reported = _reported(store, ("about",))
+    reported = _read_reported(store, ("about",))
     return None if reported is None else str(reported["about"]["database"][0])
 
 
-def _reported(store: Store, names: Sequence[str] = NEEDED) -> Tables | None:
+def _read_reported(store: Store, names: Sequence[str] = NEEDED) -> Tables | None:
     """Return tables of the last report; None where there is none, or it is damaged."""
     try:
         return {name: read_parquet(reported_path(store) / f"{name}.parquet") for name in names}
@@ -124,7 +124,7 @@ def _reported(store: Store, names: Sequence[str] = NEEDED) -> Tables | None:
         return None
 
 
-def _today(store: Store) -> Tables:
+def _read_today(store: Store) -> Tables:
     """Return the tables of the lake that a report compares."""
     tables = {n: store.read(n) for n in ("boats", "tows", "tow_runs", "hand_windows", "methods")}
     about = {"code_version": code_version(), "database": store.contents(DATABASE_TABLE)}
@@ -144,21 +144,21 @@ def _today(store: Store) -> Tables:
 @lru_cache(maxsize=1)
 def _compare_states(store: Store, was_state: object, now_state: object) -> ChangeReport:
     """Compare two states of the tables; cached, as several ask."""
-    now = _today(store)
-    was = now if was_state == now_state else _reported(store)
+    now = _read_today(store)
+    was = now if was_state == now_state else _read_reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
-    methods = _came_and_went(before["methods"], now["methods"], ("method",), "gone")
-    editions = _came_and_went(before["editions"], now["editions"], ("edition",), "gone")
-    faults = _came_and_went(before["quarantine"], now["quarantine"], FAULT, "mended")
+    methods = _list_new_and_gone(before["methods"], now["methods"], ("method",), "gone")
+    editions = _list_new_and_gone(before["editions"], now["editions"], ("edition",), "gone")
+    faults = _list_new_and_gone(before["quarantine"], now["quarantine"], FAULT, "mended")
     return ChangeReport(
         first=was is None,
-        tows=_tows(before, now).to_dicts(),
+        tows=_compare_tows(before, now).to_dicts(),
         seasons_gone=sorted(set(before["tows"]["season"]) - set(now["tows"]["season"])),
         editions=[] if was is None else editions.to_dicts(),
         methods=[] if was is None else methods.to_dicts(),
         set_aside=faults.to_dicts(),
-        factors=_factors(before["log_factors"], now["log_factors"]).to_dicts(),
-        lines=_lines(before, now, store.read("boats").select("fsn_no", "name")),
+        factors=_compare_factors(before["log_factors"], now["log_factors"]).to_dicts(),
+        lines=_compare_drafts(before, now, store.read("boats").select("fsn_no", "name")),
         judged=count_statuses(store),
     )
 
@@ -173,12 +173,12 @@ def count_statuses(store: Store) -> Row:
     counts = {name: int((statuses == name).sum()) for name in STATUSES}
     acceptances = store.read("acceptances", method)
     doubted = acceptances.filter(pl.col("doubted_by").list.len() > 0)["tow_id"].to_list()
-    return {"method": method, **counts, "doubted": doubted}
+    return {"method": method} | counts | {"doubted": doubted}
 
 
-def _tows(was: Tables, now: Tables) -> pl.DataFrame:
+def _compare_tows(was: Tables, now: Tables) -> pl.DataFrame:
     """Return tows that came, went, or are made from other files or facts."""
-    facts = ("tow_id", "fsn_no", "season", *FILES)
+    facts = ("tow_id", "fsn_no", "season") + FILES
     pairs = (
         was["tows"]
         .select(facts)
@@ -201,24 +201,25 @@ def _tows(was: Tables, now: Tables) -> pl.DataFrame:
         .then(pl.lit("list"))
         .otherwise(pl.lit("samples"))
     )
-    of_now = (pl.coalesce(f"{name}_right", name).alias(name) for name in ("fsn_no", "season"))
-    return pairs.select("tow_id", *of_now, what.alias("what")).sort("tow_id")
+    return pairs.select(
+        "tow_id",
+        fsn_no=pl.coalesce("fsn_no_right", "fsn_no"),
+        season=pl.coalesce("season_right", "season"),
+        what=what,
+    ).sort("tow_id")
 
 
-def _came_and_went(
+def _list_new_and_gone(
     was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str], went: str
 ) -> pl.DataFrame:
     """Return the rows that are new and those that are gone, by their key; `what` says which."""
-    parts = ((now, was, "new"), (was, now, went))
-    return pl.concat(
-        mine.select(key)
-        .join(other, on=key, how="anti", nulls_equal=True)
-        .with_columns(pl.lit(what).alias("what"))
-        for mine, other, what in parts
-    ).sort("what", *key)
+    new = now.select(key).join(was, on=key, how="anti", nulls_equal=True)
+    gone = was.select(key).join(now, on=key, how="anti", nulls_equal=True)
+    both = pl.concat([new.with_columns(what=pl.lit("new")), gone.with_columns(what=pl.lit(went))])
+    return both.sort("what", pl.col(key))
 
 
-def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
+def _compare_factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
     pairs = was.select(pl.col(FACTOR), old_factor="factor").join(
         now.select(pl.col(FACTOR), new_factor="factor"), on=FACTOR, maintain_order="left"
     )
@@ -227,12 +228,13 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
     return pairs.filter(moved).with_columns(ratio.alias("ratio")).sort(FACTOR)
 
 
-def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
+def _compare_drafts(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
     """Return lines that changed, of every draft before or now, with the name of the boat."""
     same = find_same_tows(was, now)
     others = any(tables["tows"].height > len(same) for tables in (was, now))
     code = not was["about"]["code_version"].equals(now["about"]["code_version"])
-    hashes = [dict(t["methods"].select("method", "content_hash").rows()) for t in (was, now)]
+    old_hashes = dict(was["methods"].select("method", "content_hash").iter_rows())
+    new_hashes = dict(now["methods"].select("method", "content_hash").iter_rows())
     changed = []
     for method in now["methods"]["method"]:
         draft = draft_name(method)
@@ -240,7 +242,7 @@ def _lines(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
         new = now["register"].filter(edition=draft)
         if old.is_empty() or new.is_empty():
             continue
-        redefined = hashes[0].get(method) != hashes[1].get(method)
+        redefined = old_hashes.get(method) != new_hashes.get(method)
         old = old.with_columns(basis=pl.lit(MEASURED))
         new = new.with_columns(basis=pl.lit(MEASURED))
         ground = name_grounds(old, new, same, others=others, method=redefined, code=code)

@@ -41,7 +41,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line of that boat in it.
     """
-    lines = add_peers(_lines(views, edition))
+    lines = add_peers(_read_lines(views, edition))
     wanted = lines.filter(pl.col("cw_kg_m").is_not_null())
     if fsn_no is not None:
         wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())
@@ -69,7 +69,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
     return rows
 
 
-def _lines(views: Views, edition: str) -> pl.DataFrame:
+def _read_lines(views: Views, edition: str) -> pl.DataFrame:
     """Return the lines of an edition or draft with their boats, and what held before."""
     if not edition.startswith(DRAFT) and edition in edition_names(views.store):
         read = read_edition(views.store, edition)

@@ -19,13 +19,8 @@ from pipeline.studies.summaries import season_changes
 from warehouse.queries.history import Draft
 from warehouse.queries.views import curve_figure
 
-LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(*VALID_RATIO, 13)})
+LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(VALID_RATIO[0], VALID_RATIO[1], 13)})
 """Speeds at which a curve is drawn / declared speed."""
-
-TYPE_COLUMNS: Final = (
-    "method", "fsn_no", "name", "boat_type", "rowers", "crew_class", "tow_id", "season",
-    "weight_kg", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_standard_kg_m",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -52,10 +47,12 @@ class Scenario:
         lines = self.register_lines
         changed = lines.filter(change="changed")
         gain = changed["gain_in_two_hours_s"]
-        kinds = ("same", "changed", "added", "removed")
         return {
             "lines": lines.height,
-            **{kind: lines.filter(change=kind).height for kind in kinds},
+            "same": lines.filter(change="same").height,
+            "changed": changed.height,
+            "added": lines.filter(change="added").height,
+            "removed": lines.filter(change="removed").height,
             "gains": int((gain > 0).sum()),
             "loses": int((gain < 0).sum()),
             "median_ratio": lines["cw_ratio"].median(),
@@ -72,7 +69,7 @@ class Scenario:
         """Return what the figure of a boat's curves draws: see `curve_figure`, at 13 speeds."""
         curves = self.boat_curves(fsn_no).drop_nulls("cw_kg_m")
         runs = self.both(lambda draft: draft.made.run_points)
-        return pl.concat(curve_figure(_lines(curves), runs, curves).values(), how="diagonal")
+        return pl.concat(curve_figure(_draw_curves(curves), runs, curves).values(), how="diagonal")
 
     def boat_curves(self, fsn_no: str) -> pl.DataFrame:
         """Return every curve of a boat under both methods, with the `interval` of the method."""
@@ -91,7 +88,7 @@ class Scenario:
         return self.after.history.boats.select("fsn_no", "name", "boat_type")
 
 
-def _lines(curves: pl.DataFrame) -> pl.DataFrame:
+def _draw_curves(curves: pl.DataFrame) -> pl.DataFrame:
     """Return Cw of each curve at `LINE_RATIOS` of its declared speed."""
     rows = LINE_RATIOS.join(curves, how="cross")
     a = rows["a_kg_m"].to_numpy()

@@ -69,7 +69,7 @@ def choose_type(views: Views, wanted: str) -> str:
             fsn_no,
             fsn_no,
         )
-    known = [*types, *boats["fsn_no"], *boats["name"].drop_nulls()]
+    known = list(types) + boats["fsn_no"].to_list() + boats["name"].drop_nulls().to_list()
     raise MissingKnowledgeError(
         "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by "
         "FSN number or name, for example {}.{}",

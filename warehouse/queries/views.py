@@ -71,10 +71,10 @@ class Views:
     def register(self) -> pl.DataFrame:
         """Return the lines of every edition with name and type of the boat."""
         lines = self.ask("register")
-        key = ["edition", *LINE]
+        key = ("edition",) + LINE
         for edition in edition_names(self.store):
             own = read_table(edition_path(self.store, edition), "register")
-            own = own.select(*key, "name", "boat_type")
+            own = own.select(pl.col(key), "name", "boat_type")
             lines = lines.update(own, on=key, include_nulls=True)
         called = pl.col("name").str.to_lowercase()
         return lines.sort("edition", called, pl.col(LINE), nulls_last=True, maintain_order=True)
@@ -108,20 +108,17 @@ def curve_figure(
         `line` and `declared` (Cw at the declared speed) with `interval`, `point` (a run) without;
         all with `fsn_no`, `tow_id` and `method`.
     """
-    of_tow = ("fsn_no", "tow_id", "method")
-    numbers = ("speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "interval")
-    own = curves.select(*of_tow, "interval")
-    rows = {
-        "line": (lines.join(own, on=of_tow[1:], maintain_order="left"), numbers),
-        "point": (
-            runs.join(own, on=of_tow[1:], maintain_order="left"),
-            ("run", "direction", "speed_m_s", "cw_kg_m", "used"),
-        ),
-        "declared": (curves.with_columns(speed_m_s="declared_speed_m_s"), numbers),
-    }
+    of_tow = pl.col("fsn_no", "tow_id", "method")
+    numbers = pl.col("speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "interval")
+    of_run = pl.col("run", "direction", "speed_m_s", "cw_kg_m", "used")
+    own = curves.select(of_tow, "interval")
+    drawn = lines.join(own, on=["tow_id", "method"], maintain_order="left").drop_nulls("cw_kg_m")
+    points = runs.join(own, on=["tow_id", "method"], maintain_order="left").drop_nulls("cw_kg_m")
+    declared = curves.with_columns(speed_m_s="declared_speed_m_s").drop_nulls("cw_kg_m")
     return {
-        kind: frame.drop_nulls("cw_kg_m").select(*of_tow, *columns, kind=pl.lit(kind))
-        for kind, (frame, columns) in rows.items()
+        "line": drawn.select(of_tow, numbers, kind=pl.lit("line")),
+        "point": points.select(of_tow, of_run, kind=pl.lit("point")),
+        "declared": declared.select(of_tow, numbers, kind=pl.lit("declared")),
     }
 
 

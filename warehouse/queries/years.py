@@ -30,7 +30,7 @@ def summarise_years(lines: pl.DataFrame, printed: pl.DataFrame) -> pl.DataFrame:
     in_print = printed.filter("has_valid_curve").select(
         pl.col(LINE), year="season", printed_cw="cw_kg_m"
     )
-    pairs = lines.join(in_print, on=["year", *LINE], maintain_order="left")
+    pairs = lines.join(in_print, on=("year",) + LINE, maintain_order="left")
     ratio = pl.col("printed_cw") / pl.col("published_cw_kg_m")
     beside_print = pairs.group_by("year", "method", maintain_order=True).agg(
         printed_lines=pl.len(),

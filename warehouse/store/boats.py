@@ -97,7 +97,7 @@ def choose_boat(boats: pl.DataFrame, wanted: str) -> str:
             ", ".join(numbers[:MAX_NAMES_SHOWN]) + more,
         )
     number, example = boats.sort("fsn_no").select("fsn_no", "name").row(0)
-    known = [*boats["fsn_no"], *boats["name"].drop_nulls()]
+    known = boats["fsn_no"].to_list() + boats["name"].drop_nulls().to_list()
     raise MissingKnowledgeError(
         "there is no boat {!r}; boats go by FSN number or name, for example {} or {}.{}",
         wanted,

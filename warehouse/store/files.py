@@ -51,7 +51,7 @@ def write_folder_beside(target: Path) -> Iterator[Path]:
         yield beside
         beside.chmod(0o755)
         with ThreadPoolExecutor() as threads:  # a site has a thousand files
-            list(threads.map(sync, (beside, *beside.rglob("*"))))
+            list(threads.map(sync, [beside] + list(beside.rglob("*"))))
         if target.exists():
             target.rename(old)
         beside.rename(target)

@@ -49,7 +49,7 @@ class KnownMethods:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all methods: those that ship, then the folder's own."""
-        return (*list_shipped_methods(), *self.own)
+        return list_shipped_methods() + self.own
 
     def get(self, name: str) -> Method:
         """Return a method by name.
@@ -130,18 +130,11 @@ def methods_to_apply(store: Store, listed: Sequence[str], asked: Sequence[str] =
     """
     if listed and not asked:
         return list(listed)
-    wanted = {*(asked or list_shipped_methods()), *_held(store)}
-    in_order = dict.fromkeys((*listed, *KnownMethods.from_store(store).names))
+    wanted = set(asked or list_shipped_methods())
+    if store.read_fingerprint("methods") is not None:
+        wanted.update(store.read("methods")["method"])
+    in_order = dict.fromkeys(tuple(listed) + KnownMethods.from_store(store).names)
     return [name for name in in_order if name in wanted]
-
-
-def _held(store: Store) -> list[str]:
-    """Return the methods of which the data folder holds tables."""
-    return (
-        []
-        if store.read_fingerprint("methods") is None
-        else store.read("methods")["method"].to_list()
-    )
 
 
 def read_method_file(file: Path) -> str:

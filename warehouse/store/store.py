@@ -34,14 +34,6 @@ def fingerprint(*parts: object) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def digest_table(frame: pl.DataFrame) -> str:
-    """Return a hash of a table's values as they are read: 13 significant digits, in row order."""
-    lists = [c for c, dtype in frame.schema.items() if isinstance(dtype, pl.List)]
-    flat = frame.with_columns(pl.col(lists).list.join("\x1f")) if lists else frame
-    text = flat.write_csv(float_scientific=True, float_precision=12)
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
 @dataclass(frozen=True)
 class Store:
     """The data folder."""
@@ -100,7 +92,9 @@ class Store:
         self, table: str, method: str | None = None, columns: Sequence[str] | None = None
     ) -> pl.DataFrame:
         """Read a table as written, or its rows of one method, or some of its columns."""
-        asked = columns if method is None or columns is None else list({"method", *columns})
+        asked = columns
+        if method is not None and columns is not None:
+            asked = list(set(columns) | {"method"})
         frame = read_parquet(self.table_path(table), asked)
         if method is None:
             return frame

@@ -3,10 +3,13 @@
 The limits are those of the declared tables; nothing here repeats one.
 """
 
+from dataclasses import replace
+
 import pytest
 
 from pipeline.tables.frames import limits
 from warehouse.archive import kinds as list_kinds
+from warehouse.archive.columns import Column
 from warehouse.archive.files import ArchiveFile
 from warehouse.archive.list_rules import read_races
 from warehouse.archive.lists import read_lists
@@ -148,3 +151,9 @@ def test_a_tow_list_of_an_impossible_year_is_set_aside(archive):
     found = archive.scan()
     assert len(found.good) == 3
     assert {f.path for f in found.faults} == {"sleeplijsten/sleeplijst_1985.csv"}
+
+
+def test_a_column_that_its_table_cannot_hold_is_refused():
+    columns = (*list_kinds.TOWS.columns, Column("boatman", "bootsman", required=False))
+    with pytest.raises(LookupError, match=r"ListedTows has no column boatman: .*pipeline/tables/"):
+        replace(list_kinds.TOWS, columns=columns)
