@@ -49,8 +49,8 @@ def estimate_currents(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.Data
     )
     tows = (
         means.filter(direction=OUT)
-        .join(means.filter(direction=BACK), on="tow_id", suffix="_back")
-        .join(curves.select("method", "tow_id", "season"), on="tow_id")
+        .join(means.filter(direction=BACK), on="tow_id", suffix="_back", maintain_order="left")
+        .join(curves.select("method", "tow_id", "season"), on="tow_id", maintain_order="left")
         .sort("tow_id")
     )
     log_out, log_back = tows["log_m_s"].to_numpy(), tows["log_m_s_back"].to_numpy()
