@@ -14,6 +14,7 @@ from markupsafe import Markup, escape
 
 from dashboards import words
 from dashboards.language import Language
+from dashboards.pictures import make_standalone
 from dashboards.plot import (
     CHARACTER_WIDTH_PX,
     GREY,
@@ -23,7 +24,6 @@ from dashboards.plot import (
     Scale,
     fit_scale,
     get_ink,
-    make_standalone,
 )
 from pipeline.history import ERAS
 from pipeline.messages import say

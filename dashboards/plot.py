@@ -15,6 +15,7 @@ import numpy as np
 from markupsafe import Markup, escape
 
 from dashboards.language import Language
+from dashboards.pictures import FONT_SIZE_PX
 
 INKS: Final = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "currentColor")
 """Colour of each kind of mark, by its number."""
@@ -42,14 +43,6 @@ CHARACTER_WIDTH_PX: Final = 6.6
 BULK_QUARTILES: Final = 2.0
 """Interquartile ranges beyond the quartiles that an axis for the bulk of the numbers reaches, so
 that one boat does not squeeze all others."""
-
-FONT_SIZE_PX: Final = 12
-
-STANDALONE_LOOKS: Final = (
-    'xmlns="http://www.w3.org/2000/svg" fill="currentColor" font-family="Open Sans, sans-serif" '
-    f'font-size="{FONT_SIZE_PX}"'
-)
-"""What a picture needs outside a page; the style sheet of pages says it once for all of theirs."""
 
 TICKS: Final = 5
 """About as many ticks as an axis has."""
@@ -153,14 +146,6 @@ def _place_legend(
         placed.append((entry, x, row))
         x += entry_width
     return placed
-
-
-def make_standalone(svg: str) -> Markup:
-    """Return a picture of a page as a file, or a part of a PDF, can have it."""
-    plain = str(svg)  # markup would escape what replaces
-    if "xmlns=" not in plain:
-        plain = plain.replace("<svg ", f"<svg {STANDALONE_LOOKS} ", 1)
-    return Markup(plain)  # noqa: S704 - our own
 
 
 class Mark(NamedTuple):

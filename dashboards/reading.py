@@ -10,7 +10,7 @@ from html import escape
 from html.parser import HTMLParser
 from typing import Final
 
-from dashboards.plot import make_standalone
+from dashboards.pictures import make_standalone
 
 SKIPPED_TAGS: Final = ("head", "header", "form", "footer", "button", "summary", "nav")
 """Parts of a page that say nothing elsewhere."""

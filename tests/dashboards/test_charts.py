@@ -8,7 +8,8 @@ import pytest
 
 from dashboards import charts
 from dashboards.language import Language
-from dashboards.plot import LegendEntry, Plot, fit_scale, make_standalone
+from dashboards.pictures import make_standalone
+from dashboards.plot import LegendEntry, Plot, fit_scale
 
 NL = Language("nl")
 SVG = "{http://www.w3.org/2000/svg}"
