@@ -18,7 +18,7 @@ from pipeline.tables.lake import SeasonIndex
 from pipeline.tables.schemas import conform
 from warehouse.derive.archive_tables import archive_tables, read_earlier
 from warehouse.intake import lake, seasons
-from warehouse.store.code import COMPUTING, code_hash
+from warehouse.store.code import COMPUTING, hash_code
 
 TOWS_PER_TASK: Final = 10
 """Number of tows that a helper reads before it reports: a helper takes a second to be asked."""
@@ -35,7 +35,7 @@ PROGRESS: Final = "herijk.progress"
 @incremental()
 def archive_lists(folders: Folders) -> dict[str, pl.DataFrame]:
     """Boats, tows, races and files of the archive, and what is wrong in the lists."""
-    return seasons.index(folders.store, folders.archive_root)
+    return seasons.index(folders.store, folders.find_archive_root)
 
 
 class SeasonsToRead(dg.Config):
@@ -48,7 +48,7 @@ class SeasonsToRead(dg.Config):
     )
 
 
-@dg.asset(code_version=code_hash(*READS_WITH))
+@dg.asset(code_version=hash_code(*READS_WITH))
 @incremental(code=READS_WITH, is_whole=lake.has_all_files)
 def samples(
     config: SeasonsToRead,
@@ -62,7 +62,7 @@ def samples(
     Files are read in tasks of some tows of a season, side by side. A tow whose file, row of the
     list and profile are those of the last rebuild is not read again.
     """
-    store, root = folders.store, folders.archive_root
+    store, root = folders.store, folders.find_archive_root
     listed = listed_tows["season"].unique().sort().to_list()
     wanted = [season for season in listed if not config.seasons or season in config.seasons]
     if listed and not wanted:
@@ -102,11 +102,11 @@ def log_progress(tasks: list[pl.DataFrame], n_done: int) -> None:
     logging.getLogger(PROGRESS).info("tows", extra=numbers)
 
 
-@dg.asset(code_version=code_hash(*READS_WITH))
+@dg.asset(code_version=hash_code(*READS_WITH))
 @incremental(code=READS_WITH)
 def blocks(folders: Folders, samples: pl.DataFrame) -> pl.DataFrame:
     """Return the sums over each second of each run of every tow that can be used."""
-    return lake.all_blocks(folders.store, samples)
+    return lake.read_all_blocks(folders.store, samples)
 
 
 @dg.multi_asset(

@@ -14,7 +14,7 @@ import polars as pl
 
 from assets.lake import Folders
 from assets.settings import Settings
-from pipeline.register.register import default_method
+from pipeline.register.register import choose_default_method
 from pipeline.tables.schemas import TABLES
 from warehouse.derive.database import IN_DATABASE
 from warehouse.editions.verify import verify
@@ -203,7 +203,7 @@ def show_verdicts(name: str, quantity: str) -> dg.AssetChecksDefinition:
     )
     def evaluate(folders: Folders) -> dg.AssetCheckResult:
         verdicts = folders.store.read("type_consistency").filter(quantity=quantity)
-        method = default_method(verdicts["method"].unique().sort().to_list())
+        method = choose_default_method(verdicts["method"].unique().sort().to_list())
         by_type = dict(verdicts.filter(method=method).select("boat_type", "verdict").rows())
         return dg.AssetCheckResult(
             passed="differ" not in by_type.values(),

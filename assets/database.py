@@ -11,7 +11,7 @@ from assets.lake import Folders, incremental
 from assets.report import write_report
 from assets.workers import map_in_parallel
 from warehouse.derive import database as duck
-from warehouse.store.code import code_hash
+from warehouse.store.code import hash_code
 
 SHOWING: Final = ("dashboards", "pipeline", "warehouse")
 """Packages with which pages are made; their words count too."""
@@ -41,7 +41,7 @@ def warehouse_database(
     return duck.warehouse_database(tables, about_archive, objection_terms, folders.store)
 
 
-@dg.asset(deps=[warehouse_database], code_version=code_hash(*SHOWING, __name__))
+@dg.asset(deps=[warehouse_database], code_version=hash_code(*SHOWING, __name__))
 @incremental(code=SHOWING, is_whole=lambda store: (store.root / "site" / "index.html").exists())
 def site(folders: Folders) -> pl.DataFrame:
     """Pages people can look at, swapped in whole; the table lists the pages that failed."""

@@ -26,9 +26,9 @@ from assets.settings import Settings, read_settings
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.method.definition import Method
-from pipeline.tables.frames import dtypes
+from pipeline.tables.frames import get_dtypes
 from pipeline.tables.schemas import TABLES, conform
-from warehouse.store.code import COMPUTING, code_hash
+from warehouse.store.code import COMPUTING, hash_code
 from warehouse.store.lock import hold_write_lock
 from warehouse.store.methods import KnownMethods, methods_to_apply
 from warehouse.store.store import DamagedFileError, Store, digest_contents, fingerprint
@@ -61,7 +61,7 @@ class Folders(dg.ConfigurableResource["Folders"]):
     )
 
     @property
-    def archive_root(self) -> Path:
+    def find_archive_root(self) -> Path:
         """The archive, as an absolute path: a worker of Dask may work in another folder."""
         return Path(self.archive).resolve()
 
@@ -148,10 +148,10 @@ def incremental(
             read = sorted(key.to_user_string() for key in context.assets_def.dependency_keys)
             made_from = fingerprint(
                 {name: store.contents(name) for name in read},
-                {name: str(dtypes(TABLES[name])) for name in names if name in TABLES},
+                {name: str(get_dtypes(TABLES[name])) for name in names if name in TABLES},
                 get_config(given),
                 also,
-                code_hash(*code, compute.__module__),
+                hash_code(*code, compute.__module__),
             )
             is_made = all(store.read_fingerprint(name) == made_from for name in names)
             if read and is_made and is_whole(store):
@@ -242,7 +242,7 @@ def outs(*names: str) -> dict[str, dg.AssetOut]:
 def describe_table(spec: dg.AssetSpec) -> dg.AssetSpec:
     """Return an asset's spec with the meaning and columns of its table, and its code version."""
     schema = TABLES.get(spec.key.to_user_string())
-    version = spec.code_version or code_hash(*COMPUTING, f"assets.{spec.group_name}")
+    version = spec.code_version or hash_code(*COMPUTING, f"assets.{spec.group_name}")
     with_code = spec.replace_attributes(code_version=version)
     if schema is None:
         return with_code

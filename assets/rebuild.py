@@ -15,7 +15,7 @@ from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from warehouse.archive import list_archive_files
 from warehouse.intake.lake import ArchiveChangedError
 from warehouse.intake.seasons import listing
-from warehouse.store.code import code_hash
+from warehouse.store.code import hash_code
 from warehouse.store.files import write_beside
 from warehouse.store.lock import hold_write_lock
 from warehouse.store.machine_faults import explain_machine_faults
@@ -114,7 +114,7 @@ def compute_stamp(store: Store, archive: Path, asked: str) -> str:
         stat = file.stat()
         ours.append((str(file.relative_to(store.root)), stat.st_size, stat.st_mtime_ns))
     place = str(archive.resolve())
-    return fingerprint(asked, place, listing(archive), ours, code_hash(*EVERYTHING))
+    return fingerprint(asked, place, listing(archive), ours, hash_code(*EVERYTHING))
 
 
 def _is_unchanged(store: Store, archive: Path, asked: str) -> bool:

@@ -27,7 +27,7 @@ from dashboards.reports import (
 )
 from pipeline.errors import HerijkError
 from pipeline.messages import LANGUAGE
-from warehouse.queries.change_report import ChangeReport, change_report, last_changes, remember
+from warehouse.queries.change_report import ChangeReport, change_report, read_last_changes, remember
 from warehouse.store.code import code_version
 from warehouse.store.files import write_beside
 from warehouse.store.store import Store
@@ -102,7 +102,7 @@ def write_report(store: Store, check_results: pl.DataFrame, now: dt.datetime) ->
     )
     if not changes.nothing:
         _write(store.root / "report" / f"{now:%Y-%m-%dT%H%M%S}.json", _to_json(report))
-    _publish(store, report, changes if not changes.nothing else last_changes(store))
+    _publish(store, report, changes if not changes.nothing else read_last_changes(store))
     remember(store)
     return report
 
@@ -150,7 +150,7 @@ def failed_checks(checks: Sequence[Check]) -> list[str]:
 
 def _end_run(store: Store, now: dt.datetime, outcome: str, reason: str) -> Report:
     """Report on a run that changed no table."""
-    last = last_changes(store)
+    last = read_last_changes(store)
     nothing: dict[str, Any] = {
         one.name: [] for one in fields(ChangeReport) if one.name not in ("first", "judged")
     }

@@ -7,7 +7,7 @@ import polars as pl
 
 from assets.lake import Folders, incremental, outs
 from pipeline.method.definition import Method
-from warehouse.derive.registers import published_tables
+from warehouse.derive.registers import read_published_tables
 from warehouse.store.decisions import FILE_NAME, read_decisions, tabulate_decisions
 from warehouse.store.methods import KnownMethods
 
@@ -61,7 +61,7 @@ def decisions(folders: Folders) -> pl.DataFrame:
 @incremental()
 def published(folders: Folders) -> dict[str, pl.DataFrame]:
     """Return the published editions: their tables as they lie in their folders."""
-    tables = published_tables(folders.store)
+    tables = read_published_tables(folders.store)
     return {
         "editions": tables["editions"],
         "published_register": tables["register"],

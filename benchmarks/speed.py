@@ -160,10 +160,10 @@ def tasks(world: World, compared: int) -> dict[str, Callable[[], object]]:
     """What is timed, by its label."""
     some, all_tows = world.tows(compared), world.tows().drop("samples_key", "blocks_key")
     files, written = world.lake_files(some), FOLDER / "written"
-    runs = intake.runs_with_windows(world.store).join(
+    runs = intake.read_runs_with_windows(world.store).join(
         all_tows.select("tow_id"), on="tow_id", how="semi"
     )
-    blocks = stack_blocks(intake.all_blocks(world.store), runs)
+    blocks = stack_blocks(intake.read_all_blocks(world.store), runs)
     return {
         "parse text, write Parquet": partial(parse_and_write, world, some, written),
         "blocks from text": partial(read_text, world, some, FOLDER / "empty"),

@@ -196,7 +196,7 @@ def draw_curves(
 
     Args:
         language: of what is written.
-        rows: of `kind` line, point and declared, as `curve_figure` gives them.
+        rows: of `kind` line, point and declared, as `prepare_curve_figure` gives them.
         caption: of the picture.
         width: of the picture [px].
         height: of the picture [px].

@@ -16,7 +16,7 @@ _FOLDERS: Final = {"nl": "docs/nl", "en": "docs"}
 """Where the documents of a language lie."""
 
 
-def guide_file(name: str, language: str) -> Path:
+def find_guide_file(name: str, language: str) -> Path:
     """Where the document is: packed with the program, or in its checkout."""
     packed = _PACKAGE / _FOLDERS[language] / f"{name}.md"
     return packed if packed.exists() else _PACKAGE.parent / _FOLDERS[language] / f"{name}.md"
@@ -33,7 +33,7 @@ class MethodGuide(NamedTuple):
     methods: str
 
 
-def method_guide(language: str) -> MethodGuide:
+def find_method_guide(language: str) -> MethodGuide:
     """Return the document on methods by section."""
-    text = guide_file("method", language).read_bytes().decode()
+    text = find_guide_file("method", language).read_bytes().decode()
     return MethodGuide(*(f"## {section}" for section in text.split("\n## ")[1:]))

@@ -21,7 +21,7 @@ from dashboards.queries import boats, methods, pages, types
 from dashboards.queries.results import Data, Results
 from pipeline.messages import LANGUAGES
 from warehouse.queries.views import Views
-from warehouse.store.editions import NOTICE, NOTICE_EN, edition_names, edition_path
+from warehouse.store.editions import NOTICE, NOTICE_EN, get_edition_path, list_edition_names
 from warehouse.store.files import write_folder_beside
 from warehouse.store.store import Store
 from warehouse.store.unforeseen import Border, border
@@ -183,8 +183,8 @@ def _list_findable(views: Views) -> Iterator[list[Any]]:
 
 def _write_downloads(folder: Path, store: Store) -> None:
     """Copy the sheets of every edition, byte for byte, and set its notices as PDF."""
-    for name in edition_names(store):
-        source, target = edition_path(store, name), folder / DOWNLOADS / name
+    for name in list_edition_names(store):
+        source, target = get_edition_path(store, name), folder / DOWNLOADS / name
         target.mkdir(parents=True)
         for sheet in pages.SHEETS:
             (target / sheet).write_bytes((source / sheet).read_bytes())

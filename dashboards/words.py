@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from pipeline.assessment.checks import CHECKS
 from pipeline.messages import Sentence, pgettext, say
-from pipeline.register.register import draft_name
+from pipeline.register.register import name_draft
 from pipeline.tables.causes import CAUSES, STEPS, name_cause
 
 SIMULATED: Final = say(
@@ -312,7 +312,7 @@ def name_crew(crew_class: str) -> Sentence:
 
 def name_edition(edition: str) -> Sentence:
     """Return an edition as people call it: a draft by its method."""
-    method = edition.removeprefix(draft_name(""))
+    method = edition.removeprefix(name_draft(""))
     if method == edition:
         return say("{}", edition)
     return say("{}: {}", say("draft"), name_method(method))

@@ -15,7 +15,7 @@ SAME_SHARE: Final = 1e-9
 """Numbers that differ by no more than this share of themselves are equal."""
 
 
-def first_largest(values: FloatArray) -> IntArray:
+def find_first_largest(values: FloatArray) -> IntArray:
     """Return the index along axis 0 of the first of the largest values."""
     top = values.max(axis=0)
     enough = np.where(top > 0.0, top * (1.0 - SAME_SHARE), top * (1.0 + SAME_SHARE))

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 LONGEST_TEXT: Final = 1_000_000
 
 
-def decoded(content: bytes) -> str:
+def decode_toml(content: bytes) -> str:
     """Return the text of a file.
 
     Raises:
@@ -76,7 +76,7 @@ PROBLEMS: Final = {
 """What is wrong, by Pydantic's name for it."""
 
 
-def problem_in_words(problem: "ErrorDetails") -> Sentence:
+def describe_problem(problem: "ErrorDetails") -> Sentence:
     """Say what is wrong with a value, and the value if `problem` holds it."""
     kind, limits = problem["type"], problem.get("ctx", {})
     if kind == "value_error":  # of a check of our own

@@ -12,7 +12,7 @@ from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.archive_tables import add_first_seen, read_archive, read_earlier
 from warehouse.derive.database import build_database
 from warehouse.derive.recomputing import ArchiveRuns, recompute_archive
-from warehouse.derive.registers import published_tables, register_tables
+from warehouse.derive.registers import read_published_tables, register_tables
 from warehouse.store.decisions import FILE_NAME, read_decisions, tabulate_decisions
 from warehouse.store.store import Store
 
@@ -59,7 +59,7 @@ def compute_tables(store: Store, methods: Sequence[Method], today: dt.date) -> N
 
 def make_registers(store: Store, methods: Sequence[Method]) -> None:
     """Make the drafts and their lineage, beside the editions that are published."""
-    published = published_tables(store)
+    published = read_published_tables(store)
     made = register_tables(
         curves=store.read("curves"),
         tows=store.read("tows"),

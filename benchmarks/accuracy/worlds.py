@@ -42,7 +42,7 @@ from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.recompute import recompute
 from tests.worlds import Measured, measure, truth_rows
 from warehouse.derive.plausible import add_doubts
-from warehouse.store.code import code_hash, code_version
+from warehouse.store.code import code_version, hash_code
 from warehouse.store.database import open_database
 
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data")) / "accuracy"
@@ -136,7 +136,7 @@ def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
 
 def simulated(world: str, seed: int) -> Measured:
     """Simulated once for every version of the simulator; sums are kept with seven digits."""
-    version = code_hash("herijk.simulate", "pipeline.blocks")
+    version = hash_code("herijk.simulate", "pipeline.blocks")
     kept = FOLDER / "blocks" / version / f"{world}-{seed}.pickle"
     if kept.exists():
         return _with_sums(pickle.loads(kept.read_bytes()), np.float64)  # noqa: S301, our own file

@@ -12,11 +12,11 @@ import polars as pl
 from dashboards.queries.results import Data, Results
 from pipeline.method.options import find_basis
 from pipeline.method.variant import Difference, differences
-from pipeline.register.register import draft_name
+from pipeline.register.register import name_draft
 from pipeline.tables.display import STEP_CHANGE
 from pipeline.tables.row import Row
-from warehouse.queries.answers import add_peers, answers, season_faults, select_own_races
-from warehouse.queries.views import DRAFT, curve_figure
+from warehouse.queries.answers import add_peers, answers, list_season_faults, select_own_races
+from warehouse.queries.views import DRAFT, prepare_curve_figure
 from warehouse.store.methods import KnownMethods
 
 NEGLIGIBLE_CHANGE: Final = 5e-4
@@ -65,12 +65,12 @@ def read_boat(
 
     boat = results.select_boat("boats", fsn_no).row(0, named=True)
     is_draft = pl.col("edition").str.starts_with(DRAFT)
-    of_editions = ~is_draft | pl.col("edition").is_in([draft_name(name) for name in shown])
+    of_editions = ~is_draft | pl.col("edition").is_in([name_draft(name) for name in shown])
     curves = own("curves").with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
     runs = own("run_points").sort("tow_id", "run", maintain_order=True)
-    figure = curve_figure(own("curve_points"), runs, curves)
+    figure = prepare_curve_figure(own("curve_points"), runs, curves)
     tows = dict(curves.select("tow_id", "tow").rows())
     crews = read_answers(results, chosen_edition).get(fsn_no, []) if tows else []
     size = pl.col("cw_effect_ratio").log().abs()
@@ -88,7 +88,7 @@ def read_boat(
         ),
         "tows": results.select_boat("tows", fsn_no).sort("tow_date", "tow_id"),
         "curves": curves,
-        "steps": _tabulate_steps(own_steps(results, fsn_no, shown)),
+        "steps": _tabulate_steps(select_own_steps(results, fsn_no, shown)),
         "runs": runs.with_columns(run_cw_kg_m="cw_kg_m"),
         "currents": own("tow_currents"),
         "budget": budget.sort("u_ratio", descending=True, maintain_order=True),
@@ -113,7 +113,7 @@ def read_boat(
     }
 
 
-def own_steps(results: Results, fsn_no: str, methods: Sequence[str]) -> pl.DataFrame:
+def select_own_steps(results: Results, fsn_no: str, methods: Sequence[str]) -> pl.DataFrame:
     """Return the rows of `correction_steps` of a boat between these methods."""
     is_shown = pl.col("from_method").is_in(methods) & pl.col("to_method").is_in(methods)
     return results.select_boat("correction_steps", fsn_no).filter(is_shown)
@@ -163,7 +163,7 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     races = select_own_races(results.views, previous, edition)
     races_by_crew = races.partition_by(CREW, as_dict=True, maintain_order=True)
     # An edition holds no faults of instruments.
-    faults = season_faults(results.views) if edition.startswith(DRAFT) else {}
+    faults = list_season_faults(results.views) if edition.startswith(DRAFT) else {}
     ends = ["cw_lo_kg_m", "cw_hi_kg_m"]
     old_ends = results.register.filter(edition=previous or "").select(
         *CREW, "empty_thwart", *(pl.col(name).alias(f"old_{name}") for name in ends)

@@ -8,11 +8,11 @@ import polars as pl
 from dashboards.queries.pages import pick_cause, sum_up_changes
 from dashboards.queries.results import Data
 from pipeline.method.variant import differences
-from pipeline.register.register import draft_name
+from pipeline.register.register import name_draft
 from pipeline.register.replay import RaceRules
 from pipeline.tables.row import Row
 from warehouse.editions.compare import DiffReport, report_with_races
-from warehouse.store.editions import Edition, edition_names, read_edition
+from warehouse.store.editions import Edition, list_edition_names, read_edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
 
@@ -33,11 +33,11 @@ def compare(
     Raises:
         HerijkError: there is no such method or edition, or it cannot be computed.
     """
-    known, published = KnownMethods.from_store(store), edition_names(store)
+    known, published = KnownMethods.from_store(store), list_edition_names(store)
     sides = []
     for name in (old, new):
         is_published = name in published
-        method_name = name.removeprefix(draft_name(""))
+        method_name = name.removeprefix(name_draft(""))
         sides.append(read_edition(store, name) if is_published else known.named(method_name))
     old_side, new_side = sides
     before = old_side.method if isinstance(old_side, Edition) else old_side
@@ -53,9 +53,9 @@ def compare(
         if isinstance(side, Edition):
             editions.append(side)
             continue
-        from warehouse.editions.publish import drafted  # noqa: PLC0415 - it recomputes tows
+        from warehouse.editions.publish import draft_edition  # noqa: PLC0415 - it recomputes tows
 
-        editions.append(drafted(store, side, as_of, counting))
+        editions.append(draft_edition(store, side, as_of, counting))
     first, second = editions
     effect = report_with_races(store, first, second, rules)
     return data | {"effect": effect, "simulated": effect.simulated} | _sum_up(effect)

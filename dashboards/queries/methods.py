@@ -5,7 +5,7 @@ from typing import Any
 
 import polars as pl
 
-from dashboards.guides import method_guide
+from dashboards.guides import find_method_guide
 from dashboards.queries.boats import NEGLIGIBLE_CHANGE
 from dashboards.queries.results import Data, Results
 from pipeline.messages import LANGUAGES
@@ -14,7 +14,7 @@ from pipeline.method.options import START, STEP_ORDER, Steps, find_basis
 from pipeline.method.variant import Difference, differences
 from pipeline.register.register import STUDIED_METHOD
 from pipeline.tables.row import Row
-from warehouse.queries.views import curve_figure
+from warehouse.queries.views import prepare_curve_figure
 from warehouse.store.methods import KnownMethods
 
 
@@ -39,7 +39,7 @@ def read_method(results: Results, name: str) -> Data:
         "validity": shown.validity,
         "certain": _measure_certainty(results, shown),
         "worked": _work_through(results, name, ladder),
-        "guide": {tag: method_guide(tag) for tag in LANGUAGES},
+        "guide": {tag: find_method_guide(tag) for tag in LANGUAGES},
         "is_studied": name == STUDIED_METHOD,
     }
 
@@ -132,7 +132,7 @@ def _work_through(results: Results, method: str, ladder: pl.DataFrame) -> Data |
     views, key = results.views, {"method": method, "tow_id": tow_id}
     curves = views.ask("curves").filter(**key)
     run = views.table("run_points").filter("used", **key).sort("run").row(0, named=True)
-    figure = curve_figure(views.table("curve_points"), views.table("run_points"), curves)
+    figure = prepare_curve_figure(views.table("curve_points"), views.table("run_points"), curves)
     steps = ladder.filter(tow_id=tow_id).sort("position")
     return {
         "curve": curves.row(0, named=True),

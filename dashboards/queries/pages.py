@@ -7,7 +7,7 @@ from typing import Final
 
 import polars as pl
 
-from dashboards.guides import guide_file
+from dashboards.guides import find_guide_file
 from dashboards.queries.boats import find_changed_options, find_decided_steps, list_causes
 from dashboards.queries.methods import get_method_page, group_by_status
 from dashboards.queries.results import Data, Results
@@ -19,11 +19,11 @@ from pipeline.register.causes import explode_causes, summarise_causes
 from pipeline.tables.display import STEP_FACTOR
 from pipeline.tables.keys import LINE, SEASON_LEVEL, WOULD_NOT_SHOW
 from pipeline.tables.row import Row
-from warehouse.queries.answers import race_chances
-from warehouse.queries.change_report import last_changes
+from warehouse.queries.answers import estimate_race_chances
+from warehouse.queries.change_report import read_last_changes
 from warehouse.queries.views import DRAFT
 from warehouse.queries.years import summarise_years
-from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, edition_path
+from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, get_edition_path
 from warehouse.store.methods import KnownMethods
 
 MONTHS_AHEAD: Final = dt.timedelta(days=365)
@@ -55,7 +55,7 @@ def read_start(results: Results) -> Data:
         "changed": sum_up_changes(lines),
         "vote": sum_up_gains(lines),
         "then": find_most_changed(years.filter(method=results.method), "year"),
-        "rebuilt": last_changes(views.store),
+        "rebuilt": read_last_changes(views.store),
         **read_season_changes(results),
     }
 
@@ -434,7 +434,7 @@ def read_race(results: Results, race: str, day: dt.date) -> Data:
     now = rows.filter(to_edition=chosen)
     chances: dict[tuple[str, str], float | None] = {}
     if now.height:
-        chances = race_chances(results.views, now["from_edition"][0], chosen)
+        chances = estimate_race_chances(results.views, now["from_edition"][0], chosen)
     classes = now.partition_by("crew_class", maintain_order=True)
     return {
         "race": race,
@@ -513,13 +513,13 @@ def read_quality(results: Results) -> Data:
 
 def read_guide(name: str) -> Data:
     """Return a document of the project by language."""
-    texts = {tag: guide_file(name, tag).read_text("utf-8") for tag in LANGUAGES}
+    texts = {tag: find_guide_file(name, tag).read_text("utf-8") for tag in LANGUAGES}
     return {"guide": texts}
 
 
 def read_edition_page(results: Results, edition: str) -> Data:
     """Return the notice of a published edition by language, and which files it offers."""
-    folder = edition_path(results.views.store, edition)
+    folder = get_edition_path(results.views.store, edition)
     notices = {"nl": folder / NOTICE, "en": folder / NOTICE_EN}
     return {
         "name": edition,

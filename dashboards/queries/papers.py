@@ -15,14 +15,14 @@ from dashboards.queries.pages import measure_fatigue_range, pick_cause, sum_up_c
 from dashboards.queries.results import Data, Results
 from pipeline.method.definition import COMPLETE, RUNS_ALONE
 from pipeline.register.causes import summarise_causes
-from pipeline.register.register import draft_name
+from pipeline.register.register import name_draft
 from pipeline.tables.row import Row
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.documents import (
     SMOOTH_SPEEDS,
     SPEEDS,
-    certificate_lines,
     compute_line_curve,
+    read_certificate_lines,
 )
 from warehouse.queries.views import Views
 
@@ -62,7 +62,7 @@ def read_certificates(
     """
     about, objection = views.about(), Results(views).objection
     made = []
-    for line in certificate_lines(views, edition, fsn_no):
+    for line in read_certificate_lines(views, edition, fsn_no):
         whose = f"{line['fsn_no']} {line['rowers']}{line['crew_class']}"
         with border(f"certificate {edition} {whose}"):
             made.append(
@@ -136,7 +136,7 @@ def read_proposal(
     results = Results(views)
     proposals = []
     for method in methods:
-        lines = compared(views, against, draft_name(method), letter["valid_from"])
+        lines = compared(views, against, name_draft(method), letter["valid_from"])
         proposals.append(
             _describe_proposal(views, against, method, lines)
             | {"title": titles[method], "explained": read_method(results, method)}
@@ -173,7 +173,7 @@ def _describe_proposal(views: Views, against: str, method: str, lines: pl.DataFr
         "losing": moved.filter(gain < 0).head(MAX_CREWS_NAMED),
         "unknown": int(lines["exceeds_interval"].null_count()),
         "flagged": {"flagged": int(voted.is_in(flagged.implode()).sum()), "lines": voted.len()},
-        **_replay_races(views, against, draft_name(method)),
+        **_replay_races(views, against, name_draft(method)),
     }
 
 

@@ -7,9 +7,9 @@ from typing import Any, Final, TypeAlias
 
 import polars as pl
 
-from pipeline.register.register import FIRST_PUBLISHED, default_method
+from pipeline.register.register import FIRST_PUBLISHED, choose_default_method
 from pipeline.tables.row import Row
-from warehouse.queries.answers import current_edition, line_changes
+from warehouse.queries.answers import choose_current_edition, line_changes
 from warehouse.queries.views import Views
 from warehouse.store.database import make_unknown_edition_error
 
@@ -47,7 +47,7 @@ class Results:
     @cached_property
     def method(self) -> str:
         """The method that is shown first."""
-        return default_method(self.methods)
+        return choose_default_method(self.methods)
 
     @cached_property
     def before_and_after(self) -> list[str]:
@@ -63,7 +63,7 @@ class Results:
     @cached_property
     def edition(self) -> str:
         """The edition that counts, or the best draft."""
-        return current_edition(self.views)
+        return choose_current_edition(self.views)
 
     @cached_property
     def register(self) -> pl.DataFrame:

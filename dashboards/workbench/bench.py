@@ -24,7 +24,7 @@ from pipeline.method.reading import list_shipped_methods
 from pipeline.method.variant import Difference, cut_at, differences, variant, write_variant_text
 from warehouse.queries.history import Draft, History
 from warehouse.queries.scenario import Scenario
-from warehouse.store.editions import edition_names, read_edition, read_edition_method
+from warehouse.store.editions import list_edition_names, read_edition, read_edition_method
 from warehouse.store.files import write_new
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
@@ -156,7 +156,7 @@ class Bench:
 
     def list_editions(self) -> list[str]:
         """Return the published editions that were made with a method."""
-        names = edition_names(self.store)
+        names = list_edition_names(self.store)
         return [name for name in names if read_edition(self.store, name).method is not None]
 
     def save(self, wanted: Saving) -> Path:
@@ -177,7 +177,7 @@ class Bench:
         return path
 
     def _get_compared(self, name: str) -> Method:
-        if name in edition_names(self.store):
+        if name in list_edition_names(self.store):
             return read_edition_method(self.store, name)
         return self.known.get(name)
 

@@ -99,12 +99,12 @@ def audit(
     """
     from dashboards.queries import boats, types
     from warehouse.queries.types import choose_type, find_boat
-    from warehouse.store.editions import edition_names
+    from warehouse.store.editions import list_edition_names
     from warehouse.store.methods import KnownMethods
 
     if len(names) > 2:
         raise click.UsageError(tell("give a boat, or one or two types; quote a name with blanks"))
-    is_published = edition in edition_names(store)
+    is_published = edition in list_edition_names(store)
     if is_published and (wants_json() or not store.database.exists()):
         show_lineage(store, str(edition), names[0])  # an edition says this by itself
         return

@@ -82,13 +82,13 @@ def _choose_method(store: "Store", edition: str | None) -> str | None:
     """Return the method of an edition or draft; None where none is named."""
     if edition is None:
         return None
-    from pipeline.register.register import draft_name
-    from warehouse.store.editions import edition_names, read_edition_method
+    from pipeline.register.register import name_draft
+    from warehouse.store.editions import list_edition_names, read_edition_method
     from warehouse.store.methods import KnownMethods
 
-    if edition in edition_names(store):
+    if edition in list_edition_names(store):
         return read_edition_method(store, edition).name
-    return KnownMethods.from_store(store).get(edition.removeprefix(draft_name(""))).name
+    return KnownMethods.from_store(store).get(edition.removeprefix(name_draft(""))).name
 
 
 @click.command(
@@ -166,9 +166,9 @@ def publish(
 def verify(store: "Store", head: str | None) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
     from warehouse.editions.verify import verify as verify_editions
-    from warehouse.store.editions import edition_names
+    from warehouse.store.editions import list_edition_names
 
-    if not edition_names(store) and not store.database.exists():
+    if not list_edition_names(store) and not store.database.exists():
         raise MissingKnowledgeError(
             "{} holds no editions and no tables; is it the right data folder?", store.root
         )

@@ -24,7 +24,7 @@ from pipeline.quantiles import differ_beyond_intervals
 from pipeline.run_reasons import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_SELECTED
 from pipeline.tables.declare import dy
 from pipeline.tables.first_assessment import RULES, VERDICTS, FirstAssessment, Rule, Verdict
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.row import Row
 
 MAX_OFF_TARGET_RATIO: Final = 0.05
@@ -182,7 +182,7 @@ def assess_first(tow: QuayTow) -> dy.DataFrame[FirstAssessment]:
         rows += [one._asdict() for one in mine or [nothing]]
     key = {"method": tow.curve["method"], "tow_id": tow.tow["tow_id"]}
     placed = [key | {"place": place} | row for place, row in enumerate(rows, start=1)]
-    return frame_of(FirstAssessment, placed)
+    return make_frame(FirstAssessment, placed)
 
 
 def get_verdict(assessment: pl.DataFrame) -> Verdict:

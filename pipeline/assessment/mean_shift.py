@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.choice import first_largest
+from pipeline.choice import find_first_largest
 from pipeline.quantiles import MAD_TO_SD
 
 MIN_SCALE: Final = 0.5
@@ -173,7 +173,7 @@ class _Search:
             size = self._score * sd**2
             beyond = np.abs(size) / (sd * limits)
             beyond[~self._is_open | (np.abs(size) < min_size)] = 0.0
-            best = int(first_largest(beyond))
+            best = int(find_first_largest(beyond))
             if beyond[best] < 1.0:
                 return taken
             taken.append(MeanShift(best, float(size[best]), float(sd[best]), clear))

@@ -15,14 +15,14 @@ from pipeline.arrays import BoolArray, FloatArray, IntArray, OnDemand
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.channels import BACK, OUT, SECOND_FILE_OFFSET
 from pipeline.tables import archive
-from pipeline.tables.frames import dtypes
+from pipeline.tables.frames import get_dtypes
 
 DOUBTED_SPEED: Final = "speed_not_plausible"
 """A doubt for which a person must look, but that leaves the tow out of nothing."""
 
 NOT_ALWAYS_KNOWN: Final = pl.DataFrame(
     schema={
-        **dtypes(archive.Tows),
+        **get_dtypes(archive.Tows),
         "boat_type": pl.String,
         **dict.fromkeys(("listed_length_m", "listed_beam_m"), pl.Float64),
     }

@@ -23,7 +23,7 @@ from pipeline.history import ERAS, Era
 from pipeline.quantiles import LEVEL
 from pipeline.tables.consistency import EraShifts, RepeatPairs
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.keys import LINE, UNKNOWN_TYPE
 from pipeline.tables.row import Row
 
@@ -167,7 +167,7 @@ def era_shifts(repeat_pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[
             for era in ERAS[:-1]:
                 key: Row = {"method": method, "boat_type": boat_type, "era": era.name}
                 rows.append(key | _shift(group, era, yearly))
-    return frame_of(EraShifts, rows)
+    return make_frame(EraShifts, rows)
 
 
 def _years() -> pl.Expr:

@@ -42,7 +42,7 @@ from pipeline.consistency.repeats import estimate_median
 from pipeline.quantiles import t_quantile
 from pipeline.tables import keys
 from pipeline.tables.consistency import TypeConsistency, TypeLinePoints
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.keys import TERM_NAMES, TOW_SPEED, UNKNOWN_TYPE, WEIGHT
 from pipeline.tables.row import Row
 
@@ -651,7 +651,7 @@ def compare_types(
                 lines.extend(draw_lines(explained))
                 deviations.append(own_deviations)
     return TypeResults(
-        consistency=frame_of(TypeConsistency, verdicts),
-        lines=frame_of(TypeLinePoints, lines),
+        consistency=make_frame(TypeConsistency, verdicts),
+        lines=make_frame(TypeLinePoints, lines),
         deviations=pl.concat(deviations),
     )

@@ -25,7 +25,7 @@ from pipeline.method.definition import (
     join_equal_ranges,
 )
 from pipeline.method.options import Declared, Steps
-from pipeline.toml_text import parse_toml, problem_in_words
+from pipeline.toml_text import describe_problem, parse_toml
 
 MAX_METHOD_LETTERS: Final = 100_000
 """More letters than any method has."""
@@ -169,7 +169,7 @@ class _Source:
         # An unknown key first: a key with a typing error is missing as well.
         problem = min(error.errors(), key=lambda found: found["type"] != "extra_forbidden")
         path = [part for part in problem["loc"] if isinstance(part, str)]
-        message = problem_in_words(problem)
+        message = describe_problem(problem)
         if problem["type"] == "extra_forbidden":
             allowed = ", ".join(_list_keys(declared, path[:-1]))
             message = say("{}; allowed here: {}", message, allowed)

@@ -91,7 +91,7 @@ def add_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
     return runs.join(given, on=["tow_id", "run"], how="left", maintain_order="left")
 
 
-def samples_files(tows: pl.DataFrame) -> pl.DataFrame:
+def list_samples_files(tows: pl.DataFrame) -> pl.DataFrame:
     """Return the samples files of tows: `tow_id`, `path` and `sha256`, one or two rows per tow."""
     first = tows.select("tow_id", path="samples_path", sha256="samples_sha256")
     second = tows.select("tow_id", path="second_path", sha256="second_sha256").drop_nulls()

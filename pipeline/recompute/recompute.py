@@ -31,7 +31,7 @@ from pipeline.recompute.run_cache import RunCache
 from pipeline.recompute.season_factors import find_season_factors, get_instruments
 from pipeline.run_reasons import ABOVE_TARGET, NO_STEADY_WINDOW, NOT_CALIBRATED, NOT_SELECTED
 from pipeline.season_log import SeasonFactors
-from pipeline.steps.calibration import gps_factor_of_files
+from pipeline.steps.calibration import estimate_gps_factor_of_files
 from pipeline.steps.resistance import (
     RunMeans,
     accelerated_mass_kg,
@@ -39,8 +39,8 @@ from pipeline.steps.resistance import (
     temperature_change_kg_m,
 )
 from pipeline.steps.speed import log_factor
-from pipeline.steps.target import above_target
-from pipeline.steps.wind import nearest_coefficients
+from pipeline.steps.target import is_above_target
+from pipeline.steps.wind import find_nearest_coefficients
 from pipeline.uncertainty.propagation import Assumed
 
 PER_RUN_ITERATIONS: Final = 4
@@ -160,7 +160,7 @@ def correct_speed(
     is_measured = tows.selected & has_window
     corrected_log = means.speed_m_s * factor[tows.tow]
     is_steady = has_window & (corrected_log > 0)
-    of_files, is_known = gps_factor_of_files(
+    of_files, is_known = estimate_gps_factor_of_files(
         tows, means.gps_m_s, corrected_log, is_measured, is_steady
     )
     needs_gps = options.is_calibrated[tows.tow]
@@ -186,7 +186,7 @@ def select_runs(
     """
     is_selected = plan.tows.selected
     highest_ratio = plan.run_options.run.highest_target_ratio
-    is_too_fast = above_target(plan.tows, log_m_s, is_selected & has_window, highest_ratio)
+    is_too_fast = is_above_target(plan.tows, log_m_s, is_selected & has_window, highest_ratio)
     return np.select(
         [~is_selected, ~has_window, is_too_fast, ~is_determined],
         [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET, NOT_CALIBRATED],
@@ -237,7 +237,7 @@ def search_drag_per_run(computed: Computed) -> Computed:
         on_curve = curve.cw(curves.a_kg_m[tow], curves.s_s2_m2[tow], computed.speed_m_s)
         has_curve = curves.converged[tow] & np.isfinite(on_curve)
         wanted_air = cw + computed.air_with(drag) - np.where(has_curve, on_curve, cw)
-        ahead, behind = nearest_coefficients(
+        ahead, behind = find_nearest_coefficients(
             computed.means.air, wanted_air * computed.speed_factor**2
         )
         drag = Drag(

@@ -33,7 +33,7 @@ from pipeline.recompute.computed import Computed
 from pipeline.season_log import SeasonFactors
 from pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
 from pipeline.season_log.factors import NOT_SETTLED
-from pipeline.tables.frames import dtypes
+from pipeline.tables.frames import get_dtypes
 from pipeline.tables.season_log import (
     BestEstimateWeights,
     LogFactors,
@@ -219,7 +219,7 @@ def _make_log_factors(c: Computed, estimated: SeasonFactors | None) -> pl.DataFr
             found = _average_factor(ln_factor[(season == year) & (which == first)])
         factor, lo, hi, source = found
         rows.append({"season": year, "factor": factor, "lo": lo, "hi": hi, "source": source})
-    return pl.DataFrame(rows, dtypes(LogFactors, without=["method"]))
+    return pl.DataFrame(rows, get_dtypes(LogFactors, without=["method"]))
 
 
 Factor = tuple[float, float | None, float | None, str]
@@ -257,9 +257,9 @@ def _make_tables_of_all_tows(
 
     They are without rows where nothing was estimated.
     """
-    links = pl.Schema(dtypes(SeasonLinks, without=["method"]))
-    instruments = pl.Schema(dtypes(TowInstruments, without=["method"]))
-    weights = pl.Schema(dtypes(BestEstimateWeights, without=["method"]))
+    links = pl.Schema(get_dtypes(SeasonLinks, without=["method"]))
+    instruments = pl.Schema(get_dtypes(TowInstruments, without=["method"]))
+    weights = pl.Schema(get_dtypes(BestEstimateWeights, without=["method"]))
     if estimated is None:
         return (
             pl.DataFrame(schema=links),

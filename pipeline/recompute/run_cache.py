@@ -8,7 +8,7 @@ from typing import Any
 
 from pipeline.blocks.tows import Tows
 from pipeline.steps.resistance import window_means
-from pipeline.steps.window import Windows, steady_windows, take_whole_runs
+from pipeline.steps.window import Windows, find_steady_windows, take_whole_runs
 
 
 class RunCache:
@@ -27,7 +27,7 @@ class RunCache:
         """Return `Windows.columns_of_runs` and `window_means` by name, (runs,) each."""
         key = (tuple(tows.frame["tow_id"]), is_trimmed)
         if key not in self._windows:
-            find = steady_windows if is_trimmed else take_whole_runs
+            find = find_steady_windows if is_trimmed else take_whole_runs
             self._windows[key] = find(tows.blocks)
         windows = self._windows[key]
         averaged = key + (averaging_s, is_robust)

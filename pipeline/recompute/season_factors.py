@@ -26,7 +26,7 @@ from pipeline.recompute.plan import Plan
 from pipeline.season_log import SeasonFactors, estimate_roughly, estimate_season_factors
 from pipeline.season_log.archive import LOG, UNOBSERVED_SD, sort_tows
 from pipeline.steps.calibration import gps_factor
-from pipeline.tables.frames import dtypes
+from pipeline.tables.frames import get_dtypes
 from pipeline.tables.keys import LINE
 from pipeline.tables.season_log import TowInstruments
 
@@ -42,7 +42,7 @@ USUAL_LOG_SCATTER: Final = 0.005
 MEDIAN_SQUARE: Final = 0.455
 """Median of the square of a standard normal number."""
 
-INSTRUMENTS: Final = dtypes(TowInstruments, without=["method"])
+INSTRUMENTS: Final = get_dtypes(TowInstruments, without=["method"])
 """What is estimated of a tow's instruments."""
 
 

@@ -26,7 +26,7 @@ CLOSED_FORM: Final = "closed_form"
 """The log error of the season, on a printed line whose tow has no samples."""
 
 
-def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
+def assign_steps(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
     """Return the steps of a ladder as parts of the changes of the lines whose tow they are of.
 
     Args:

@@ -130,7 +130,7 @@ def compare_lines(
     )
 
 
-def largest_first(lines: pl.DataFrame) -> pl.DataFrame:
+def sort_largest_first(lines: pl.DataFrame) -> pl.DataFrame:
     """Sort lines by the size of their change, whatever its sign; those without a ratio on top."""
     size = pl.col("cw_ratio").log().abs().fill_null(math.inf)
     return lines.sort(-size, pl.col(LINE))

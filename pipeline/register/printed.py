@@ -12,7 +12,7 @@ import polars as pl
 from pipeline.curve import cw, rebase, s_of_b
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method.definition import Method
-from pipeline.register.register import TOW_DAY, tow_days, valid_until
+from pipeline.register.register import TOW_DAY, list_tow_days, valid_until
 
 AS_PRINTED: Final = "printed"
 REBASED: Final = "printed_rebased"
@@ -47,7 +47,7 @@ def rebase_printed(
     )
 
 
-def carried_lines(
+def carry_lines(
     printed: pl.DataFrame, log_factors: pl.DataFrame, method: Method, tows: pl.DataFrame
 ) -> pl.DataFrame:
     """Return printed lines of tows that have no samples, re-based as in `rebase_printed`.
@@ -61,7 +61,9 @@ def carried_lines(
         tows: rows of `tows`, all that have samples.
     """
     rebased = rebase_printed(printed, log_factors, method).filter(pl.col("cw_kg_m").is_finite())
-    without_samples = rebased.join(tow_days(tows), on=TOW_DAY, how="anti", maintain_order="left")
+    without_samples = rebased.join(
+        list_tow_days(tows), on=TOW_DAY, how="anti", maintain_order="left"
+    )
     return without_samples.unique(TOW_DAY, keep="last", maintain_order=True)
 
 

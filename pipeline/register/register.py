@@ -72,17 +72,17 @@ def add_empty_thwart(lines: pl.DataFrame) -> pl.DataFrame:
     return lines.with_columns(pl.lit(NO_EMPTY_THWART).alias("empty_thwart"))
 
 
-def draft_name(method: str) -> str:
+def name_draft(method: str) -> str:
     """Name of the unpublished edition that a method would give."""
     return f"concept-{method}"
 
 
-def default_method(names: Sequence[str]) -> str:
+def choose_default_method(names: Sequence[str]) -> str:
     """Return the method, or draft, that is shown where none is asked for.
 
     It is the best method where that is among `names` or there are none, else the last of them.
     """
-    for name in (STUDIED_METHOD, draft_name(STUDIED_METHOD)):
+    for name in (STUDIED_METHOD, name_draft(STUDIED_METHOD)):
         if name in names:
             return name
     return names[-1] if names else STUDIED_METHOD
@@ -97,7 +97,7 @@ def valid_until(tow_date: pl.Expr, rule: RegisterRule) -> pl.Expr:
     return pl.date(year + years, 12, 31)
 
 
-def reference_day(tows: pl.DataFrame, results: pl.DataFrame) -> dt.date:
+def find_reference_day(tows: pl.DataFrame, results: pl.DataFrame) -> dt.date:
     """Return the day on which drafts and the due list judge validity: of the last tow or race.
 
     Not today: the same archive gives the same tables.
@@ -124,7 +124,7 @@ def draft_register(
         on_date: the day on which validity is judged; later tows do not exist yet.
         rule: how long a tow counts, and which of its estimates.
         decisions: `tow_id` and `verdict`: a tow to `exclude`, or to `prefer` over newer ones.
-        carried: printed lines of tows without samples (`pipeline.register.printed.carried_lines`).
+        carried: printed lines of tows without samples (`pipeline.register.printed.carry_lines`).
 
     Returns:
         Rows of the table `register`, `as_of` that day. Their status is `valid`, `expired`,
@@ -136,8 +136,8 @@ def draft_register(
     towed = _add_days(apply_rule(curves, rule), made_by_then)
     curved = towed.filter(pl.col("status") != "rejected")
     sound = curved.join(_find_doubted(tows, decisions), on="tow_id", how="anti")
-    history = lines_of_all_days(curves, made_by_then, rule, decisions, carried)
-    chosen = lines_on_days(history, [on_date]).drop("as_of")
+    history = list_lines_of_all_days(curves, made_by_then, rule, decisions, carried)
+    chosen = list_lines_on_days(history, [on_date]).drop("as_of")
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(
         pl.col(LINE[:-1]), pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
     )
@@ -156,7 +156,7 @@ def draft_register(
     return both.with_columns(pl.lit(on_date).alias("as_of")).sort(LINE)
 
 
-def lines_of_all_days(
+def list_lines_of_all_days(
     curves: pl.DataFrame,
     tows: pl.DataFrame,
     rule: RegisterRule,
@@ -187,13 +187,13 @@ def lines_of_all_days(
     return ordered.select(pl.col(LINE), pl.col(CURVE_COLUMNS))
 
 
-def lines_on_days(
+def list_lines_on_days(
     history: pl.DataFrame, days: Sequence[dt.date], key: Sequence[str] = LINE
 ) -> pl.DataFrame:
     """Return the lines that count on each of some days.
 
     Args:
-        history: what a register had at some time, in the order of `lines_of_all_days`.
+        history: what a register had at some time, in the order of `list_lines_of_all_days`.
         days: the days.
         key: the columns that tell lines apart; with `edition`, those of several registers.
 
@@ -213,13 +213,13 @@ def lines_on_days(
     )
 
 
-def tow_days(tows: pl.DataFrame) -> pl.DataFrame:
+def list_tow_days(tows: pl.DataFrame) -> pl.DataFrame:
     """Return the line and day of tows: columns `TOW_DAY`."""
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
     return tows.select(pl.col(LINE[:-1]), thwart, "tow_date")
 
 
-def unmeasured_tows(
+def find_unmeasured_tows(
     listed: pl.DataFrame, printed: pl.DataFrame, tows: pl.DataFrame, day: dt.date
 ) -> pl.DataFrame:
     """Return the newest tow of each line, up to a day, that lists or print name without samples.
@@ -234,9 +234,9 @@ def unmeasured_tows(
         Rows of `TOW_DAY`.
     """
     in_print = printed.filter("has_valid_curve").select(TOW_DAY)
-    named = pl.concat([tow_days(listed), in_print], how="vertical_relaxed")
+    named = pl.concat([list_tow_days(listed), in_print], how="vertical_relaxed")
     unmeasured = named.filter(pl.col("tow_date") <= day).join(
-        tow_days(tows), on=TOW_DAY, how="anti"
+        list_tow_days(tows), on=TOW_DAY, how="anti"
     )
     return unmeasured.group_by(LINE, maintain_order=True).agg(pl.col("tow_date").max())
 
@@ -248,7 +248,7 @@ def flag_unmeasured(
 
     Args:
         lines: lines of a register.
-        unmeasured: rows of `unmeasured_tows`.
+        unmeasured: rows of `find_unmeasured_tows`.
         decisions: as for `draft_register`; a preferred tow counts whatever is newer.
     """
     newer = unmeasured.select(pl.col(LINE), unmeasured_on="tow_date")

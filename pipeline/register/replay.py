@@ -51,7 +51,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
 
     Args:
         lines: `LINE`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`, `a_kg_m`, `b_m_s`,
-            `cw_kg_m`; of all days, those that take precedence last (`lines_of_all_days`).
+            `cw_kg_m`; of all days, those that take precedence last (`list_lines_of_all_days`).
         results: `race`, `race_date`, `LINE` (the thwart null where it is not given), `distance_m`,
             `rowing_time_s`, `stream_m`, `penalty_w` (watt per rower, taken off).
         rules: how they are computed.
@@ -189,7 +189,7 @@ def _rank_under_both(results: pl.DataFrame, others: pl.DataFrame) -> pl.DataFram
     return placed.with_columns(rank.alias("rank")).drop("shared")
 
 
-def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) -> pl.DataFrame:
+def compare_winners(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) -> pl.DataFrame:
     """Find who wins each race and class under two registers, and how likely another wins.
 
     Of the crews that both registers rank, as in `race_changes`. How likely is the share of equally

@@ -12,10 +12,10 @@ from collections.abc import Sequence
 import polars as pl
 
 from pipeline.method.definition import Method, find_method_in_force
-from pipeline.register.causes import steps_of_lines
+from pipeline.register.causes import assign_steps
 from pipeline.register.changes import compare_lines
-from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name, lines_on_days
-from pipeline.register.replay import RaceRules, replay, winner_changes
+from pipeline.register.register import CURVE_COLUMNS, LINE, list_lines_on_days, name_draft
+from pipeline.register.replay import RaceRules, compare_winners, replay
 from pipeline.tables.register import RegisterYears, YearWinners
 
 KEY = ("edition", "method") + LINE
@@ -39,7 +39,7 @@ def register_years(
         Rows of the table `register_years`: of each season and method the valid lines, beside those
         of the method by which that season's register was published.
     """
-    registers = registers_of_years(history, methods, seasons)
+    registers = make_registers_of_years(history, methods, seasons)
     own_facts = registers.select("year", "method", pl.col(LINE), "tow_date", "valid_until", "basis")
     compared: list[pl.DataFrame] = [RegisterYears.create_empty()]
     for season in seasons:
@@ -49,10 +49,10 @@ def register_years(
             after = registers.filter(year=season, method=method.name)
             if before.is_empty() and after.is_empty():
                 continue
-            steps = steps_between(
+            steps = find_steps_between(
                 correction_steps, published.name, method.name, by_way_of=methods[0].name
             )
-            lines = compare_lines(before, after, steps_of_lines(before, steps))
+            lines = compare_lines(before, after, assign_steps(before, steps))
             named = lines.with_columns(
                 year=pl.lit(season, pl.Int32),
                 method=pl.lit(method.name),
@@ -63,7 +63,7 @@ def register_years(
     return pl.concat(compared)
 
 
-def registers_of_years(
+def make_registers_of_years(
     history: pl.DataFrame, methods: Sequence[Method], seasons: Sequence[int]
 ) -> pl.DataFrame:
     """Return the valid lines of the draft of every method at the end of each season.
@@ -76,10 +76,10 @@ def registers_of_years(
     Returns:
         `year`, `edition`, `method`, `LINE` and `CURVE_COLUMNS`.
     """
-    drafts = [draft_name(method.name) for method in methods]
+    drafts = [name_draft(method.name) for method in methods]
     lines = history.filter(pl.col("edition").is_in(drafts)).sort(pl.col(KEY), "position")
     days = [dt.date(season, 12, 31) for season in seasons]
-    valid = lines_on_days(lines, days, KEY).filter(status="valid")
+    valid = list_lines_on_days(lines, days, KEY).filter(status="valid")
     year = pl.col("as_of").dt.year().alias("year")
     return valid.select(year, pl.col(KEY), pl.col(CURVE_COLUMNS)).sort("year", pl.col(KEY))
 
@@ -89,7 +89,7 @@ def published_method(season: int, methods: Sequence[Method]) -> Method:
     return find_method_in_force(season, methods) or methods[0]
 
 
-def steps_between(
+def find_steps_between(
     correction_steps: pl.DataFrame, start: str, end: str, by_way_of: str
 ) -> pl.DataFrame:
     """Return the steps from one method to another, by way of the first method of the rebuild.
@@ -133,7 +133,7 @@ def year_winners(
     seasons = results["race_date"].dt.year().unique().sort().to_list()
     replayed = {}
     for method in methods:
-        lines = history.filter(edition=draft_name(method.name))
+        lines = history.filter(edition=name_draft(method.name))
         replayed[method.name] = replay(lines, results, RaceRules())
     published = {season: published_method(season, methods).name for season in seasons}
     found: list[pl.DataFrame] = [YearWinners.create_empty()]
@@ -143,7 +143,7 @@ def year_winners(
         )
         for method in methods:
             own_members = members.filter(method=method.name)
-            changes = winner_changes(before, replayed[method.name], own_members)
+            changes = compare_winners(before, replayed[method.name], own_members)
             named = changes.rename(_published_and_own, strict=False).with_columns(
                 year=year,
                 method=pl.lit(method.name),

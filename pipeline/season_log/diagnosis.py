@@ -25,7 +25,7 @@ from pipeline.season_log.observation_model import (
     ZERO_DRIFT,
 )
 from pipeline.season_log.season_levels import SeasonLevel, compare_season_levels
-from pipeline.tables.frames import dtypes
+from pipeline.tables.frames import get_dtypes
 from pipeline.tables.keys import SEASON_LEVEL, WOULD_NOT_SHOW
 from pipeline.tables.season_log import SeasonDiagnosis
 
@@ -55,7 +55,7 @@ MAX_LEVEL_HALF_WIDTH: Final = 2.0 * MAX_LEVEL
 """Half width of the interval of a level beyond which it would not show. It is passed where nothing
 but the bend tells the level from the log."""
 
-DIAGNOSIS_SCHEMA: Final = dtypes(SeasonDiagnosis, without=["method"])
+DIAGNOSIS_SCHEMA: Final = get_dtypes(SeasonDiagnosis, without=["method"])
 
 
 def diagnose_seasons(posterior: Posterior) -> pl.DataFrame:

@@ -24,7 +24,7 @@ import numpy as np
 import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
-from pipeline.choice import first_largest
+from pipeline.choice import find_first_largest
 from pipeline.season_log.archive import LEVEL
 from pipeline.season_log.boat_evidence import BoatEvidence, count_boats_needed
 from pipeline.season_log.factors import find_refused
@@ -200,7 +200,7 @@ def _find_most_needed_fault(fit: Fit, tried: set[tuple[Kind, ...]]) -> int | Non
             ln_odds[place] = -np.inf
     promising = np.flatnonzero(ln_odds > 0.0)
     ln_odds[promising[~_has_boats(fit, faults[promising])]] = -np.inf
-    best = int(first_largest(ln_odds))
+    best = int(find_first_largest(ln_odds))
     return int(faults[best]) if ln_odds[best] > 0.0 else None
 
 
@@ -239,7 +239,7 @@ def score_candidates(fit: Fit) -> ScoreTest:
     return ScoreTest(
         ln_odds=0.5 * score**2 * effects.variance[faults] / (1.0 + ratio) + ln_prior,
         would_show=0.5 * ratio**2 / (1.0 + ratio) + ln_prior > 0.0,
-        displaced=first_largest(standardized),
+        displaced=find_first_largest(standardized),
     )
 
 
@@ -289,7 +289,7 @@ def _find_unresolved(fit: Fit) -> tuple[UnresolvedFault, ...]:
     hull_names = fit.model.archive.hull_names
     unresolved = []
     for year in np.unique(season[(ln_odds > 0.0).any(axis=0)]):
-        likeliest = first_largest(np.where(season == year, ln_odds.max(axis=0), -np.inf))
+        likeliest = find_first_largest(np.where(season == year, ln_odds.max(axis=0), -np.inf))
         shown_by = np.flatnonzero(ln_odds[:, likeliest] > 0.0)
         sizes = evidence.size[shown_by, likeliest]
         fault = UnresolvedFault(

@@ -61,7 +61,7 @@ def gps_factor(
     return np.where(both, gps / np.where(both, log, 1.0), 1.0), both
 
 
-def gps_factor_of_files(
+def estimate_gps_factor_of_files(
     tows: Tows, gps_m_s: FloatArray, log_m_s: FloatArray, used: BoolArray, steady: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
     """Return the factor y of every file of a tow, and whether it could be determined.

@@ -20,11 +20,11 @@ from pipeline.method.constants import REFERENCE_WATER_C
 from pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from pipeline.steps.wind import (
     AirParts,
-    air_parts,
     average_wind,
+    compute_air_parts,
     mean_angle_deg,
 )
-from pipeline.steps.window import END_SECONDS, Windows, robust_moments
+from pipeline.steps.window import END_SECONDS, Windows, compute_robust_moments
 
 ADDED_MASS_RATIO: Final = 0.08
 """Water that is accelerated with the boat, as a share of its mass (inferred; method-details, 6)."""
@@ -117,7 +117,7 @@ def weigh_seconds(blocks: RunBlocks, window: BoolArray) -> FloatArray:
     """
     is_measured = window & (blocks.n > 0)
     per_second = blocks["log1_cw"] / np.maximum(blocks.n, 1.0)
-    centre, sd = robust_moments(per_second, is_measured)
+    centre, sd = compute_robust_moments(per_second, is_measured)
     sd = np.maximum(sd, MIN_SECONDS_SD_RATIO * np.abs(centre))
     weight = is_measured.astype(np.float64)
     for _ in range(HUBER_ITERATIONS):
@@ -175,7 +175,7 @@ def run_means(
         sd_kg_m=np.sqrt(np.maximum(over["log1_cw2"] - ratio**2, 0.0)),
         seconds_sd_kg_m=over["seconds_sd"],
         inertia_kg_m=accelerated_kg * (over["rise_m_s"] / seconds_apart) / square,
-        air=air_parts(
+        air=compute_air_parts(
             oblique,
             term,
             front_area_m2(tows.get_of_runs("beam_m"), tows.get_of_runs("bow_height_m")),

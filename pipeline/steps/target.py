@@ -13,7 +13,7 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks.tows import Tows
 
 
-def above_target(
+def is_above_target(
     tows: Tows, log_m_s: FloatArray, runs: BoolArray, highest_ratio: FloatArray | float
 ) -> BoolArray:
     """Return which runs are faster than `highest_ratio` of the declared speed, on their scale.

@@ -45,7 +45,7 @@ class AirParts:
         return AirParts(self.ahead * factor, self.behind * factor, self.side * factor)
 
 
-def air_parts(
+def compute_air_parts(
     oblique: BoolArray,
     term: Callable[[str], FloatArray],
     front_area_m2: FloatArray,
@@ -69,7 +69,7 @@ def air_parts(
     return AirParts(front * ahead, front * behind, np.where(oblique, side * term("side"), 0.0))
 
 
-def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]:
+def average_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]:
     """Return air terms of each block from the mean wind of some seconds around it.
 
     The vane jitters, and the square of a jittering wind is not the square of its mean: per
@@ -98,8 +98,8 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
 
 
 def average_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
-    """Return the blocks with the sums of their air terms as `averaged_terms` gives them."""
-    terms = averaged_terms(blocks, averaging_s)
+    """Return the blocks with the sums of their air terms as `average_terms` gives them."""
+    terms = average_terms(blocks, averaging_s)
 
     def compute(name: str) -> FloatArray:
         if name in AIR_SUMS:
@@ -121,7 +121,9 @@ def _centred_sum(values: FloatArray, width: int) -> FloatArray:
     return total
 
 
-def nearest_coefficients(air: AirParts, excess_kg_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+def find_nearest_coefficients(
+    air: AirParts, excess_kg_m: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Return coefficients within `PER_RUN_BOUNDS` that bring each run nearest to a value.
 
     The wind that is felt most is searched first, the other takes what is left.

@@ -111,7 +111,7 @@ def take_whole_runs(blocks: RunBlocks) -> Windows:
     return describe_windows(blocks, blocks.inside, ("",) * len(blocks.n))
 
 
-def steady_windows(blocks: RunBlocks) -> Windows:
+def find_steady_windows(blocks: RunBlocks) -> Windows:
     """Return the steady part of every run, or the window a person gave; some runs have none."""
     faults = Faults.from_blocks(blocks)
     start, length = find_best_windows(blocks.inside, faults, Ends.from_blocks(blocks))
@@ -191,7 +191,7 @@ class Faults:
     def from_blocks(cls, blocks: RunBlocks) -> Self:
         """Find the faults of every run."""
         force = blocks.block_means("force")
-        median, sd = robust_moments(force, blocks.inside)
+        median, sd = compute_robust_moments(force, blocks.inside)
         sd_floor = np.maximum(FORCE_SD_FLOOR * np.abs(median), 1e-9)
         force_peak = np.abs(force - median) / (PEAK_SD * np.maximum(sd, sd_floor))
         return cls(
@@ -236,11 +236,11 @@ class Ends:
         wind = blocks.block_means("wind_v") / WIND_ENDS_M_S
         centred = speed - speed.mean(axis=1, keepdims=True)
         return cls(
-            speed=running_sum(centred),
-            speed_time=running_sum(centred * np.arange(blocks.seconds, dtype=np.float64)),
-            speed_ends=span_sum(running_sum(speed), END_SECONDS) / END_SECONDS,
-            force_ends=span_sum(running_sum(force), END_SECONDS) / END_SECONDS,
-            wind_ends=span_sum(running_sum(wind), END_SECONDS) / END_SECONDS,
+            speed=compute_running_sum(centred),
+            speed_time=compute_running_sum(centred * np.arange(blocks.seconds, dtype=np.float64)),
+            speed_ends=compute_span_sum(compute_running_sum(speed), END_SECONDS) / END_SECONDS,
+            force_ends=compute_span_sum(compute_running_sum(force), END_SECONDS) / END_SECONDS,
+            wind_ends=compute_span_sum(compute_running_sum(wind), END_SECONDS) / END_SECONDS,
         )
 
     def compare(self, size: int) -> tuple[FloatArray, FloatArray]:
@@ -251,15 +251,15 @@ class Ends:
             line; and for force and wind, the larger of both. Shape (runs, windows) each.
         """
         drift = np.abs(self._speed_slope(size)) * size
-        speed = np.abs(ends_difference(self.speed_ends, size))
-        force = np.abs(ends_difference(self.force_ends, size))
-        wind = np.abs(ends_difference(self.wind_ends, size))
+        speed = np.abs(compute_ends_difference(self.speed_ends, size))
+        force = np.abs(compute_ends_difference(self.force_ends, size))
+        wind = np.abs(compute_ends_difference(self.wind_ends, size))
         return np.maximum(drift, speed), np.maximum(force, wind)
 
     def _speed_slope(self, size: int) -> FloatArray:
         """Return the least-squares slope of the speed over every window of a size, per block."""
-        sum_speed = span_sum(self.speed, size)
-        sum_speed_time = span_sum(self.speed_time, size)
+        sum_speed = compute_span_sum(self.speed, size)
+        sum_speed_time = compute_span_sum(self.speed_time, size)
         mean_time = np.arange(sum_speed.shape[1]) + (size - 1) / 2
         time_squares = size * (size**2 - 1) / 12
         return np.asarray((sum_speed_time - mean_time * sum_speed) / time_squares)
@@ -283,13 +283,13 @@ def find_best_windows(
     best_start = np.zeros(n_runs, np.int64)
     best_length = np.zeros(n_runs, np.int64)
     best_score = np.full(n_runs, -np.inf)
-    usable = running_sum((is_present & ~faults.is_ramp).astype(np.float64))
-    cost_s = running_sum(faults.cost_s)
+    usable = compute_running_sum((is_present & ~faults.is_ramp).astype(np.float64))
+    cost_s = compute_running_sum(faults.cost_s)
     for size in range(n_seconds, SHORTEST_WINDOW_S - 1, -1):
         speed_excess, other_excess = ends.compare(size)
         over_limit_cost_s = np.where(other_excess > 1.0, OVER_LIMIT_COST_S * other_excess, 0.0)
-        score = size - span_sum(cost_s, size) - over_limit_cost_s
-        is_allowed = (span_sum(usable, size) == size) & (speed_excess <= 1.0)
+        score = size - compute_span_sum(cost_s, size) - over_limit_cost_s
+        is_allowed = (compute_span_sum(usable, size) == size) & (speed_excess <= 1.0)
         score = np.where(is_allowed, np.round(score, SCORE_DECIMALS), -np.inf)
         start = score.argmax(axis=1)
         highest = score.max(axis=1)
@@ -356,12 +356,14 @@ def measure_wind_change(blocks: RunBlocks) -> FloatArray:
     squares = np.zeros(blocks.inside.shape)
     for component in ("wind_x", "wind_y"):
         wind = blocks.block_means(component)
-        median, sd = robust_moments(wind, blocks.inside)
+        median, sd = compute_robust_moments(wind, blocks.inside)
         squares += ((wind - median) / np.maximum(sd, WIND_SD_FLOOR_M_S)) ** 2
     return np.sqrt(squares)
 
 
-def robust_moments(values: FloatArray, is_present: BoolArray) -> tuple[FloatArray, FloatArray]:
+def compute_robust_moments(
+    values: FloatArray, is_present: BoolArray
+) -> tuple[FloatArray, FloatArray]:
     """Return median and robust sd of each row, shape (runs, 1); 0 for an empty row."""
     median = compute_medians(values, is_present)
     return median, MAD_TO_SD * compute_medians(np.abs(values - median), is_present)
@@ -386,7 +388,7 @@ def widen(values: FloatArray) -> FloatArray:
 # Sums over windows
 
 
-def running_sum(values: FloatArray) -> FloatArray:
+def compute_running_sum(values: FloatArray) -> FloatArray:
     """Return sums of each row up to every place, beginning with 0: one column more.
 
     They are stored by column, so that the differences over spans of a size are quick.
@@ -394,12 +396,12 @@ def running_sum(values: FloatArray) -> FloatArray:
     return np.asfortranarray(np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0))))
 
 
-def span_sum(running: FloatArray, size: int) -> FloatArray:
+def compute_span_sum(running: FloatArray, size: int) -> FloatArray:
     """Return sums over every span of `size` blocks, from a running sum."""
     return np.asarray(running[:, size:] - running[:, :-size])
 
 
-def ends_difference(ends: FloatArray, size: int) -> FloatArray:
+def compute_ends_difference(ends: FloatArray, size: int) -> FloatArray:
     """Return the mean of the last less that of the first `END_SECONDS` of every span."""
     n_spans = ends.shape[1] - size + END_SECONDS
     return np.asarray(ends[:, size - END_SECONDS :][:, :n_spans] - ends[:, :n_spans])

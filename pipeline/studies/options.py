@@ -126,7 +126,7 @@ def option_curves(
     return pl.concat(frames).select(key + ["a_kg_m", "b_m_s", "cw_kg_m"]).sort(key)
 
 
-def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
+def cross_ticks(curves: pl.DataFrame) -> pl.DataFrame:
     """Return the effect of each tick and each speed on a tow, over all combinations of the others.
 
     Args:

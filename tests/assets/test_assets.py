@@ -16,9 +16,9 @@ from polars.testing import assert_frame_equal
 import assets.instance
 from assets.checks import EQUAL
 from assets.definitions import ASSETS, build_defs
-from pipeline.register.register import default_method
+from pipeline.register.register import choose_default_method
 from tests.assets.page import page
-from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil
+from tests.assets.test_rebuild import assert_same_tables, list_samples_files, spoil
 from tests.conftest import METHODS, Workbench, in_one_process
 from warehouse.intake.seasons import INDEXED
 from warehouse.store.store import Store
@@ -65,7 +65,7 @@ def test_after_a_run_dagster_calls_nothing_stale_and_a_change_what_follows(bench
     command = ("dagster_webserver", "--python-file", "assets/definitions.py")
     with page(*command, home=instance.root_directory, **folders) as ask:
         assert stale(ask) == set()
-        spoil(samples_files(bench, 2009)[3])
+        spoil(list_samples_files(bench, 2009)[3])
         assert materialise(bench, instance, *INDEXED).success
         assert {"samples", "blocks", "curves", "register", "site"} <= stale(ask)
         assert materialise(bench, instance, *EVERY).success
@@ -112,7 +112,7 @@ def test_checks_of_the_last_rebuild_are_shown_on_the_assets(bench, instance):
 def test_verdicts_on_types_are_shown_on_their_table(bench, instance):
     result = materialise(bench, instance, "type_consistency")
     shown = {one.check_name: one for one in result.get_asset_check_evaluations()}
-    verdicts = bench.store.read("type_consistency").filter(method=default_method(METHODS))
+    verdicts = bench.store.read("type_consistency").filter(method=choose_default_method(METHODS))
     assert "differ" in verdicts["verdict"].to_list()
     for name, quantity in EQUAL.items():
         own = dict(verdicts.filter(quantity=quantity).select("boat_type", "verdict").rows())

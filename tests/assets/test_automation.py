@@ -18,7 +18,7 @@ from assets.definitions import build_defs
 from assets.report import Done, read_report
 from assets.settings import Settings, read_settings
 from pipeline.errors import MissingKnowledgeError
-from tests.assets.test_rebuild import samples_files, spoil
+from tests.assets.test_rebuild import list_samples_files, spoil
 from tests.conftest import EVERY, METHODS, STUDIES, in_one_process, without_page
 
 ROOT = Path(__file__).parents[2]
@@ -166,7 +166,7 @@ def test_a_night_without_a_change_does_no_work_and_mails_nothing(bench, mailed):
 @pytest.mark.more
 def test_a_night_with_news_mails_it(bench, mailed):
     settings, taken = mailed
-    spoil(samples_files(bench, 2009)[3])
+    spoil(list_samples_files(bench, 2009)[3])
     with run_job(bench, settings) as (result, instance):
         assert result.success
         tell_of_success(bench, settings, result, instance)

@@ -18,8 +18,8 @@ from assets.instance import open_instance
 from pipeline.errors import MissingKnowledgeError, UnavailableError
 from tests.assets.test_rebuild import (
     assert_same_tables,
+    list_samples_files,
     mended_while_read,
-    samples_files,
     spoil,
     when_read,
     without_studies,
@@ -54,12 +54,12 @@ def test_a_full_disk_leaves_the_old_tables_and_the_next_run_goes_on(bench, built
         small = type(bench)(bench.archive, disk / "data")
         filler = disk / "filler"
         filler.write_bytes(bytes(shutil.disk_usage(disk).free - 100_000))
-        kept = spoil(samples_files(bench, 2009)[3])
+        kept = spoil(list_samples_files(bench, 2009)[3])
         with pytest.raises(UnavailableError, match=r"no room left .* Free some"):
             small.rebuild()
         assert_same_tables(small.tables(), built.tables())
         filler.unlink()
-        samples_files(bench, 2009)[3].write_bytes(kept)
+        list_samples_files(bench, 2009)[3].write_bytes(kept)
         small.rebuild()
         assert_same_tables(small.tables(), built.tables())
         assert not list((disk / "data").rglob(".herijk-*"))
@@ -162,7 +162,7 @@ except UnavailableError as error:
 def test_in_a_folder_of_somebody_else_it_stops_with_the_way_out(bench, built):
     for folder in (bench.data, *bench.data.parents[:3]):
         folder.chmod(0o755)
-    spoil(samples_files(bench, 2009)[3])
+    spoil(list_samples_files(bench, 2009)[3])
     run = subprocess.run(
         [sys.executable, "-c", AS_NOBODY, bench.archive, bench.data, str(NOBODY)],
         cwd=ROOT, capture_output=True, text=True, check=False,
@@ -198,7 +198,7 @@ is met only where it is read: those are."""
 
 @pytest.mark.slow
 def test_damaged_tables_are_made_again_when_they_are_needed(bench, built):
-    file = samples_files(bench, 2009)[0]
+    file = list_samples_files(bench, 2009)[0]
     kept, left = file.read_bytes(), {}
     for how, tables in DAMAGED.items():
         for table in tables:
@@ -237,7 +237,7 @@ def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypat
 
 @pytest.mark.more
 def test_an_archive_that_never_stops_changing_is_left_alone(bench, built, monkeypatch):
-    file = samples_files(bench, 2009)[3]
+    file = list_samples_files(bench, 2009)[3]
     spoil(file)
     when_read(monkeypatch, lambda _: file.write_bytes(file.read_bytes() + b" "))
     with pytest.raises(ArchiveChangedError, match="Try again when nobody is copying"):

@@ -22,7 +22,7 @@ ONE = METHODS[:1]
 """Enough where a test is not about methods."""
 
 
-def samples_files(bench: Workbench, season: int) -> list[Path]:
+def list_samples_files(bench: Workbench, season: int) -> list[Path]:
     return sorted((bench.archive / f"meetdata_{season}").iterdir())
 
 
@@ -80,7 +80,7 @@ def files_read(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def mended_while_read(bench: Workbench, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """A spoilt file becomes sound when it is first read; gives the tows that are read."""
-    file = samples_files(bench, 2009)[3]
+    file = list_samples_files(bench, 2009)[3]
     kept = spoil(file)
     return when_read(monkeypatch, lambda read: len(read) > 1 or file.write_bytes(kept))
 
@@ -97,7 +97,7 @@ def test_a_second_rebuild_does_nothing(bench, files_read):
 def test_a_spoiled_file_leaves_alone_and_a_mended_one_comes_back_by_itself(
     bench, built, files_read
 ):
-    file = samples_files(bench, 2009)[3]
+    file = list_samples_files(bench, 2009)[3]
     tow, before = tow_of(bench, file), bench.lake_files()
     kept = spoil(file)
     assert bench.rebuild().done == Done(seasons=[2009], methods=list(METHODS), database=True)
@@ -183,7 +183,7 @@ def test_lost_lake_files_are_made_again_when_their_season_is_read(bench, built):
 
 
 def test_the_old_database_stays_when_a_step_fails(bench, built, monkeypatch):
-    spoil(samples_files(bench, 2009)[3])
+    spoil(list_samples_files(bench, 2009)[3])
     for place, error in (
         (
             "warehouse.derive.recomputing.recompute",
@@ -203,7 +203,7 @@ def test_the_old_database_stays_when_a_step_fails(bench, built, monkeypatch):
 
 def test_an_archive_of_which_no_tow_can_be_used_says_so_and_changes_nothing(bench, built):
     for season in SMALL.seasons:
-        for file in samples_files(bench, season):
+        for file in list_samples_files(bench, season):
             file.write_bytes(b"")
     with pytest.raises(MissingKnowledgeError, match=r"no tow can be used: 40 .* set aside"):
         bench.rebuild()

@@ -9,12 +9,12 @@ import pytest
 
 from assets.report import Done, failed_checks
 from dashboards.reports import Check, write_headlines
-from tests.assets.test_rebuild import samples_files, spoil, tow_of
+from tests.assets.test_rebuild import list_samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.edition_bench import EditionBench
 from warehouse.queries.change_report import (
     change_report,
-    reported_path,
+    get_reported_path,
 )
 from warehouse.store.store import read_parquet, write_parquet
 
@@ -27,7 +27,7 @@ def latest(bench):
 
 @pytest.mark.more
 def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
-    file = samples_files(bench, 2009)[3]
+    file = list_samples_files(bench, 2009)[3]
     gone, kept = tow_of(bench, file), spoil(file)
     register = built.table("register").filter(pl.col("tow_id").str.starts_with("2009"))
     stronger = register.filter(pl.col("tow_id") != gone).row(0, named=True)
@@ -64,7 +64,7 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
 def change_reported(bench, table, **columns):
     """Makes the last report one of other tables."""
     for name, changed in ((table, columns), ("about", {"database": pl.lit("other")})):
-        path = reported_path(bench.store) / f"{name}.parquet"
+        path = get_reported_path(bench.store) / f"{name}.parquet"
         write_parquet(read_parquet(path).with_columns(**changed), path)
 
 
@@ -76,7 +76,7 @@ def test_a_log_factor_that_shows_the_same_did_not_move(bench):
 
 @pytest.mark.more
 def test_a_damaged_memory_of_the_last_report_makes_the_next_the_first(bench):
-    (reported_path(bench.store) / "tows.parquet").write_bytes(b"PAR1")
+    (get_reported_path(bench.store) / "tows.parquet").write_bytes(b"PAR1")
     change_reported(bench, "register")
     assert bench.rebuild().first
     assert bench.rebuild().nothing_changed
@@ -96,7 +96,7 @@ def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):
 @pytest.mark.more
 def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, monkeypatch):
     bench.rebuild()
-    spoil(samples_files(bench, 2009)[3])
+    spoil(list_samples_files(bench, 2009)[3])
 
     def killed(*args):
         raise KeyboardInterrupt

@@ -17,7 +17,7 @@ from herijk.cli.main import app
 from tests.dashboards.conftest import EDITIONS
 from warehouse.editions.sheets import REGISTER_FIELDS
 from warehouse.queries.views import Views
-from warehouse.store.editions import XLSX, edition_path
+from warehouse.store.editions import XLSX, get_edition_path
 
 EDITION = EDITIONS[-1]
 NUMBERS = ("a_kg_m", "b_m_s", "declared_speed_m_s", "cw_kg_m")
@@ -87,7 +87,7 @@ def test_a_certificate_prints_them(store, lines):
 
 
 def test_the_spreadsheet_holds_them(store, lines):
-    sheet = openpyxl.load_workbook(edition_path(store, EDITION) / XLSX).worksheets[0]
+    sheet = openpyxl.load_workbook(get_edition_path(store, EDITION) / XLSX).worksheets[0]
     titles, *rows = sheet.iter_rows(values_only=True)
     fields = {field.column: field for field in REGISTER_FIELDS}
 

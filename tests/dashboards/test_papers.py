@@ -16,7 +16,7 @@ from dashboards.reading import read_blocks
 from pipeline.errors import MissingKnowledgeError
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.causes import summarise_causes
-from pipeline.register.register import draft_name
+from pipeline.register.register import name_draft
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
 from warehouse.queries.answers import compared, line_changes, replayed
@@ -83,8 +83,8 @@ def test_a_certificate_says_what_the_register_says(views):
     [("valid", 0, "Geldig op"), ("valid", 1, "geldt niet meer op"), ("expired", 0, "geldt niet")],
 )
 def test_a_certificate_says_whether_it_holds(views, monkeypatch, status, days_after, said):
-    (line, *_) = papers.certificate_lines(views, EDITIONS[-1], None)
-    monkeypatch.setattr(papers, "certificate_lines", lambda *_: [line | {"status": status}])
+    (line, *_) = papers.read_certificate_lines(views, EDITIONS[-1], None)
+    monkeypatch.setattr(papers, "read_certificate_lines", lambda *_: [line | {"status": status}])
     day = line["valid_until"] + dt.timedelta(days=days_after)
     (made,) = read_certificates(views, EDITIONS[-1], None, day=day)
     (shown,) = [
@@ -115,7 +115,7 @@ def proposed(views, methods, letter=PLAIN):
 def test_a_proposal_counts_every_line_that_changes(views):
     data = proposed(views, [METHODS[1]])
     (one,) = data["proposals"]
-    lines = compared(views, EDITIONS[0], draft_name(METHODS[1]))
+    lines = compared(views, EDITIONS[0], name_draft(METHODS[1]))
     changed = lines.filter(change="changed").height
     texts = [block.text for block in everything(blocks_of("proposal", data))]
     assert any(f"{changed} of {lines.height} lines change" in text for text in texts)
@@ -127,7 +127,7 @@ def test_a_proposal_counts_every_line_that_changes(views):
 
 
 def test_a_proposal_names_the_causes_that_pages_name(views):
-    old, new = map(draft_name, METHODS)
+    old, new = map(name_draft, METHODS)
     mine = summarise_causes(compared(views, old, new))
     shown = summarise_causes(line_changes(views).filter(from_edition=old, to_edition=new))
     assert {"temperature", "wind"} & {cause["step"] for cause in mine}
@@ -137,7 +137,7 @@ def test_a_proposal_names_the_causes_that_pages_name(views):
 
 def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, monkeypatch):
     """A flag of a tow that a newer one superseded is about no line."""
-    lines = compared(views, EDITIONS[0], draft_name(METHODS[1]))
+    lines = compared(views, EDITIONS[0], name_draft(METHODS[1]))
     tows = lines.drop_nulls("new_cw_kg_m")["new_tow_id"]
     flagged = pl.DataFrame({"method": METHODS[1], "tow_id": [tows[0], tows[0], "superseded"]})
     ask = Views.ask
@@ -198,5 +198,5 @@ def test_a_proposal_counts_places_as_the_pages_of_races_do(views):
 
 
 def test_a_draft_that_could_not_be_made_has_no_results(views):
-    winners, moved = replayed(views, EDITIONS[0], draft_name("never-made"))
+    winners, moved = replayed(views, EDITIONS[0], name_draft("never-made"))
     assert (winners["new_winner"].drop_nulls().to_list(), moved) == ([], (0, 0))

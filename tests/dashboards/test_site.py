@@ -15,13 +15,13 @@ from dashboards.language import Language
 from dashboards.queries.pages import SHEETS
 from dashboards.queries.results import Results
 from dashboards.site import build_site, list_pages
-from pipeline.register.register import default_method
+from pipeline.register.register import choose_default_method
 from pipeline.tables.display import TITLES, Kind, get_column
 from tests.conftest import METHODS
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 from tests.texts import said
-from warehouse.queries.answers import answers, newest_edition
+from warehouse.queries.answers import answers, choose_newest_edition
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
 
@@ -51,7 +51,9 @@ def test_every_page_is_there(site, built, results):
     subjects = {boat_path(fsn_no) for fsn_no in built.table("boats")["fsn_no"]}
     subjects |= {f"{name}.html" for name in GUIDES}
     subjects |= {edition_page(edition) for edition in EDITIONS}
-    subjects |= {f"method-{name}.html" for name in METHODS if name != default_method(METHODS)}
+    subjects |= {
+        f"method-{name}.html" for name in METHODS if name != choose_default_method(METHODS)
+    }
     subjects |= {type_path(name) for name in results.views.type_names()}
     subjects |= {race_path(race, day) for race, day in results.views.race_days()}
     assert subjects - listed == set()
@@ -245,13 +247,13 @@ def test_a_boat_s_file_stays_in_its_folder(fsn_no, path):
 
 
 def test_what_is_shown_first_is_among_what_there_is():
-    assert default_method(["as-published", "rebased", "rebased-2015"]) == "rebased"
-    assert default_method(["concept-rebased", "concept-x"]) == "concept-rebased"
-    assert default_method(["a", "b"]) == "b"
+    assert choose_default_method(["as-published", "rebased", "rebased-2015"]) == "rebased"
+    assert choose_default_method(["concept-rebased", "concept-x"]) == "concept-rebased"
+    assert choose_default_method(["a", "b"]) == "b"
     drafts = ["concept-as-published", "concept-corrected-2013"]
-    assert newest_edition([*drafts, "2026-1"], "concept-as-published") == "2026-1"
-    assert newest_edition(drafts, "concept-as-published") == "concept-as-published"
-    assert newest_edition(drafts, "concept-rebased") == "concept-corrected-2013"
+    assert choose_newest_edition([*drafts, "2026-1"], "concept-as-published") == "2026-1"
+    assert choose_newest_edition(drafts, "concept-as-published") == "concept-as-published"
+    assert choose_newest_edition(drafts, "concept-rebased") == "concept-corrected-2013"
 
 
 def test_traces_lie_once_for_both_languages(site, built, attacked):

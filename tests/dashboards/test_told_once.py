@@ -15,7 +15,7 @@ from dashboards.templates import get_template
 from dashboards.terminal import to_text
 from pipeline.assessment.checks import CODES
 from pipeline.messages import LANGUAGES
-from warehouse.queries.change_report import last_changes
+from warehouse.queries.change_report import read_last_changes
 from warehouse.queries.views import Views
 
 FRAME = {"simulated": True, "has_reports": False, "path": "", "site_root": "", "other": "",
@@ -127,7 +127,7 @@ def test_nothing_is_left_unsaid(site):
 
 def test_a_mail_says_what_the_page_says(built):
     run = reports.LastRun("2026-11-20T03:00", "changed", "", "2026-11-20T03:00")
-    changes = last_changes(built.store)
+    changes = read_last_changes(built.store)
     pages = reports.make_report_pages(built.store, changes, [], run)
     _, text = reports.write_mail(changes, [], simulated=True, run=run)
     in_page = squeeze(re.sub("<[^>]*>", "", pages["latest.html"]).replace("\u00a0", " "))

@@ -20,7 +20,7 @@ from pipeline.method.options import Steps
 from pipeline.method.reading import parse_method
 from pipeline.recompute.run_cache import RunCache
 from warehouse.editions.compare import compare
-from warehouse.editions.publish import drafted
+from warehouse.editions.publish import draft_edition
 
 PARENT = "rebased-2015"
 SIDE = {"wind.side": "0.77"}
@@ -144,7 +144,9 @@ def test_a_comparison_finds_what_the_workbench_showed(workbench, built):
     lines = workbench.compare_drafts(asked(workbench, **SIDE)).register_lines
     path = workbench.save(saving())
     method = parse_method(path.read_text(encoding="utf-8"), str(path))
-    drafts = (drafted(built.store, one) for one in (workbench.known.get("as-published"), method))
+    drafts = (
+        draft_edition(built.store, one) for one in (workbench.known.get("as-published"), method)
+    )
     compared = compare(built.store, *drafts)
     changed = compared.filter(change="changed")
     assert changed.height == lines.filter(change="changed").height > 0

@@ -5,7 +5,7 @@ import datetime as dt
 import polars as pl
 
 from pipeline.assessment.acceptance import judge_acceptances
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import ListedAcceptances
 from pipeline.tables.schemas import conform
 
@@ -32,7 +32,7 @@ def judge(*accepted: tuple[str, dt.date, str | None], flags: dict[str, list[str]
     rows += [("other", tow_id, []) for tow_id in flags]
     schema = {"method": pl.String, "tow_id": pl.String, "flags": pl.List(pl.String)}
     curves = pl.DataFrame(rows, schema, orient="row")
-    judged = judge_acceptances(frame_of(ListedAcceptances, listed), TOWS, curves)
+    judged = judge_acceptances(make_frame(ListedAcceptances, listed), TOWS, curves)
     return conform("acceptances", judged)
 
 

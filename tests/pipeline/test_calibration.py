@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.blocks.tows import Tows
 from pipeline.channels import SECOND_FILE_OFFSET
-from pipeline.steps.calibration import gps_factor, gps_factor_of_files
+from pipeline.steps.calibration import estimate_gps_factor_of_files, gps_factor
 
 WAY = np.array([1, 1, 1, -1, -1, -1])
 TOW = np.zeros(6, dtype=np.int64)
@@ -55,7 +55,7 @@ def of_two_files(used: list[int], second: float, steady: list[int] | None = None
     gps = np.tile(LOG, 2) + 0.05 * way
     chosen = np.array(used, dtype=bool)
     there = np.ones(12, dtype=bool) if steady is None else np.array(steady, dtype=bool)
-    return gps_factor_of_files(batch, gps, log, chosen, there)
+    return estimate_gps_factor_of_files(batch, gps, log, chosen, there)
 
 
 @given(second=st.floats(0.95, 1.05))
@@ -76,5 +76,5 @@ def test_files_towed_one_way_each_share_the_factor_of_the_tow():
 
 def test_runs_that_were_not_chosen_calibrate_no_tow_of_one_file():
     used = np.array([1, 1, 1, 0, 0, 0], dtype=bool)
-    known = gps_factor_of_files(batch_of(), LOG, LOG, used, ALL)[1]
+    known = estimate_gps_factor_of_files(batch_of(), LOG, LOG, used, ALL)[1]
     assert not known.any()

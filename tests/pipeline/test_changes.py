@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.register.causes import steps_of_lines
+from pipeline.register.causes import assign_steps
 from pipeline.register.changes import compare_lines
 
 KEY = ("fsn_no", "rowers", "crew_class", "empty_thwart")
@@ -101,7 +101,7 @@ def test_whatever_is_known_all_factors_multiply_to_the_change(factors):
 def test_the_steps_of_a_ladder_go_to_the_lines_of_their_tow_in_order():
     rows = [("t", 1, "b", 2.0), ("t", 0, "a", 1.0), ("u", 0, "c", 3.0)]
     ladder = pl.DataFrame(rows, schema=["tow_id", "position", "step", "factor"], orient="row")
-    found = steps_of_lines(edition("old", line("FSN1", 40.0)), ladder)
+    found = assign_steps(edition("old", line("FSN1", 40.0)), ladder)
     assert found.select("cause", "step", "factor").rows() == [
         ("method", "a", 1.0), ("method", "b", 2.0),
     ]  # fmt: skip

@@ -6,7 +6,7 @@ import pytest
 
 from pipeline.assessment.assess import apply_checks
 from pipeline.assessment.checks import CHECK
-from pipeline.choice import first_largest
+from pipeline.choice import find_first_largest
 
 
 @pytest.mark.parametrize(
@@ -20,8 +20,8 @@ from pipeline.choice import first_largest
     ],
 )
 def test_of_equals_the_first_is_chosen(values, place):
-    assert first_largest(np.array(values)) == place
-    assert first_largest(np.array([values, values]).T).tolist() == [place, place]
+    assert find_first_largest(np.array(values)) == place
+    assert find_first_largest(np.array([values, values]).T).tolist() == [place, place]
 
 
 @pytest.mark.parametrize(("observed", "side"), [(-2e-16, 1), (0.0, 1), (-0.01, 0)])

@@ -16,7 +16,7 @@ from pipeline.blocks.tows import Tows
 from pipeline.method.reading import read_shipped_method
 from pipeline.recompute.facts import add_expected_mass, add_expected_water
 from pipeline.recompute.recompute import recompute
-from pipeline.steps.target import above_target
+from pipeline.steps.target import is_above_target
 from tests.pipeline.methods import method
 from tests.worlds import Measured, find_tows_without_gps, measure, run_rows, tow_rows, without_wind
 
@@ -218,7 +218,7 @@ def test_runs_out_and_back_stay_or_go_together(measured, out, dropped):
     top = batch.target_speed_ratio == 1.1
     towed = np.where(batch.direction > 0, out, 1.1608) / 1.1
     everything = np.ones(len(batch.tow), dtype=bool)
-    too_fast = above_target(batch, intended * np.where(top, towed, 1.0), everything, 1.15)
+    too_fast = is_above_target(batch, intended * np.where(top, towed, 1.0), everything, 1.15)
     assert np.array_equal(too_fast, top & dropped)
 
 

@@ -13,15 +13,15 @@ from pipeline.method.reading import (
     read_shipped_method,
 )
 from pipeline.method.writing import write_method_text
-from pipeline.register.printed import carried_lines, rebase_printed
+from pipeline.register.printed import carry_lines, rebase_printed
 from pipeline.register.register import (
     DECISION_SCHEMA,
     NEWER_TOW_UNMEASURED,
     NO_DECISIONS,
     draft_register,
+    find_unmeasured_tows,
     flag_unmeasured,
-    lines_of_all_days,
-    unmeasured_tows,
+    list_lines_of_all_days,
 )
 
 ON = dt.date(2016, 6, 1)
@@ -97,7 +97,7 @@ def test_a_tow_with_a_thwart_left_free_is_a_line_of_its_own():
 
 
 def test_on_each_day_the_same_line_counts_in_the_history_as_in_the_register():
-    history = lines_of_all_days(*frames(ROWS), RegisterRule())
+    history = list_lines_of_all_days(*frames(ROWS), RegisterRule())
     for day in (dt.date(2009, 1, 1), dt.date(2012, 6, 1), dt.date(2014, 6, 1), ON):
         begun = history.filter(pl.col("tow_date") <= day)
         newest = begun.group_by("fsn_no", "rowers", "crew_class", maintain_order=True).last()
@@ -151,9 +151,9 @@ def test_a_line_is_flagged_where_a_newer_tow_has_no_samples():
     tows = tows.cast(days)
     listed = pl.concat([tows, tows.with_columns(tow_date=dt.date(2016, 3, 1))])
     printed = tows.with_columns(empty_thwart=pl.lit(""), has_valid_curve=pl.lit(value=True))
-    unmeasured = unmeasured_tows(listed, printed, tows, ON)
+    unmeasured = find_unmeasured_tows(listed, printed, tows, ON)
     assert unmeasured["tow_date"].to_list() == [dt.date(2016, 3, 1)]
-    assert unmeasured_tows(listed, printed, tows, dt.date(2016, 2, 1)).is_empty()
+    assert find_unmeasured_tows(listed, printed, tows, dt.date(2016, 2, 1)).is_empty()
     preferred = pl.DataFrame([("t2", "prefer")], DECISION_SCHEMA, orient="row")
     for decisions, flags in ((NO_DECISIONS, [NEWER_TOW_UNMEASURED]), (preferred, [])):
         lines = flag_unmeasured(register(), unmeasured, decisions)
@@ -188,7 +188,7 @@ def test_a_printed_line_counts_where_the_newest_tow_has_no_samples(lines, tow_id
     crews = {"rowers": 8, "crew_class": "H"}
     facts = tows.join(curves.select("tow_id", "fsn_no", "rowers", "crew_class"), on="tow_id")
     method = read_shipped_method("rebased")
-    carried = carried_lines(printed(*lines), FACTORS, method, facts)
+    carried = carry_lines(printed(*lines), FACTORS, method, facts)
     register = draft_register(curves, tows, BOATS, ON, method.validity, NO_DECISIONS, carried)
     line = register.filter(fsn_no="FSN1", **crews).row(0, named=True)
     assert (line["tow_id"], line["basis"], line["tow_date"]) == (tow_id, basis, tow_date)

@@ -8,7 +8,7 @@ import pytest
 
 from pipeline.curve import cw, s_of_b
 from pipeline.errors import MissingKnowledgeError
-from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from pipeline.register.replay import RaceRules, compare_winners, race_changes, replay
 
 DAY = dt.date(2015, 6, 6)
 PLAIN = RaceRules(fatigue="none")
@@ -106,7 +106,7 @@ def test_places_are_compared_among_crews_that_both_registers_rank():
         [None] * 3, [None] * 3, [1, 1, False], [2, 2, False], [3, 3, False], [4, 4, False]
     ]  # fmt: skip
     assert found["B0"]["old_power_w"] > found["B2"]["old_power_w"]
-    winners = winner_changes(old, new, pl.DataFrame()).row(0, named=True)
+    winners = compare_winners(old, new, pl.DataFrame()).row(0, named=True)
     assert (winners["old_winner"], winners["new_winner"]) == ("B2", "B2")
 
 
@@ -197,7 +197,7 @@ def lines_with_tows(*lines):
 
 
 def winners_of(old, new, members, rows):
-    found = winner_changes(replay(old, rows, PLAIN), replay(new, rows, PLAIN), members)
+    found = compare_winners(replay(old, rows, PLAIN), replay(new, rows, PLAIN), members)
     return found.row(0, named=True)
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from pipeline.arrays import FloatArray
 from pipeline.blocks.run_blocks import RunBlocks
-from pipeline.steps.window import Windows, steady_windows, take_whole_runs
+from pipeline.steps.window import Windows, find_steady_windows, take_whole_runs
 from pipeline.tables.keys import HAND_COLUMNS
 
 SECONDS = 50
@@ -55,7 +55,7 @@ def blocks_of(runs: Sequence[Run], hand: Sequence[Hand] | None = None) -> RunBlo
 
 
 def window_of(run: Run) -> tuple[int, int, str]:
-    found = steady_windows(blocks_of([run]))
+    found = find_steady_windows(blocks_of([run]))
     assert found.exists[0]
     return int(found.start_s[0]), int(found.end_s[0]), found.reasons[0]
 
@@ -107,7 +107,7 @@ def test_wind_and_force_that_rise_are_cut_to_equal_ends_or_said_by_how_much():
     dropping.wind_x[:8] += 1.6
     rising.wind_x += np.linspace(0, 4, SECONDS)
     stronger.force *= np.linspace(0.8, 1.2, SECONDS)
-    found = steady_windows(blocks_of([dropping, rising, stronger]))
+    found = find_steady_windows(blocks_of([dropping, rising, stronger]))
     over = found.ends_ratio
     assert over[0] <= 1.0
     assert found.start_s[0] >= 5
@@ -126,7 +126,7 @@ def test_seconds_without_samples_are_left_out_and_cut_nothing(at: int, gone: int
     n = blocks.n.copy()
     for values in (n, *sums.values()):
         values[:, lost] = 0.0
-    found = steady_windows(RunBlocks(blocks.runs, n, sums))
+    found = find_steady_windows(RunBlocks(blocks.runs, n, sums))
     assert (found.start_s[0], found.end_s[0]) == (0, SECONDS)
 
 
@@ -140,14 +140,14 @@ def assert_none(found: Windows, run: int = 0) -> None:
 def test_speed_that_rises_all_the_time_leaves_no_window(rise: float):
     run = Run()
     run.speed += np.linspace(-rise / 2, rise / 2, SECONDS)
-    found = steady_windows(blocks_of([run]))
+    found = find_steady_windows(blocks_of([run]))
     assert_none(found)
     assert found.reasons[0] != ""
 
 
 def test_a_run_shorter_than_the_minimum_has_no_window_but_may_count_whole():
     runs = blocks_of([Run(0), Run(29), Run(30), Run()])
-    found, whole = steady_windows(runs), take_whole_runs(runs)
+    found, whole = find_steady_windows(runs), take_whole_runs(runs)
     assert_none(found, run=1)
     assert found.end_s.tolist() == [0, 0, 30, SECONDS]
     assert_none(whole, run=0)
@@ -185,7 +185,7 @@ def test_a_window_is_contiguous_inside_the_run_and_never_too_short(
 ):
     runs = [disturbed_run(draw) for draw in [*draws, (0, 60, [])]]
     blocks = blocks_of(runs)
-    found = steady_windows(blocks)
+    found = find_steady_windows(blocks)
     second = np.arange(blocks.seconds)
     between = (second >= found.start_s[:, None]) & (second < found.end_s[:, None])
     assert np.array_equal(found.mask, between)
@@ -202,7 +202,7 @@ def test_a_window_given_by_hand_holds_whatever_the_rule_would_cut_if_it_is_long_
     peaked.force[4:6] += 60
     by_hand = [(0, 45, "zwaan"), None, (5, 34, "kort"), (5, 35, "net")]
     blocks = blocks_of([peaked, Run(), Run(), Run()], by_hand)
-    found = steady_windows(blocks)
+    found = find_steady_windows(blocks)
     assert found.start_s.tolist() == [0, 0, 0, 5]
     assert found.end_s.tolist() == [45, SECONDS, 0, 35]
     assert found.reasons == ("by_hand: zwaan", "", "by_hand: kort", "by_hand: net")

@@ -11,7 +11,7 @@ from pipeline.hull import hull_speed_m_s
 from pipeline.method.reading import parse_method, read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
-from pipeline.studies.options import TICKS, option_curves, tick_effects
+from pipeline.studies.options import TICKS, cross_ticks, option_curves
 from tests.worlds import measure
 
 SPEEDS = {2010: {"as_read", "multiply", "divide"}, 2013: {"as_read"}, 2016: {"as_read", "dgps"}}
@@ -61,7 +61,7 @@ def test_b_from_length_is_hull_speed(world, curves):
 
 
 def test_the_speed_correction_is_the_largest_effect_and_dividing_takes_more(world, curves):
-    effects = tick_effects(curves).join(world.tows.select("tow_id", "season"), on="tow_id")
+    effects = cross_ticks(curves).join(world.tows.select("tow_id", "season"), on="tow_id")
     old = effects.filter(season=2010)
     # 6 % of speed at elasticities of 2 to 5; 1 / 0.94 against 1.06 is 0.36 %.
     ln = {name: rows["cw_effect_ratio"].log() for (name,), rows in old.group_by("option")}

@@ -11,7 +11,12 @@ from hypothesis import strategies as st
 from pipeline.blocks.run_blocks import RunBlocks, WindowSums, stack_blocks
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
-from pipeline.steps.wind import AirParts, air_parts, averaged_terms, nearest_coefficients
+from pipeline.steps.wind import (
+    AirParts,
+    average_terms,
+    compute_air_parts,
+    find_nearest_coefficients,
+)
 
 FRONT, SIDE = np.array([3.26]), np.array([9.0])
 SPEED = 2.5
@@ -30,7 +35,9 @@ def blocks_of(wind_m_s, angle_deg, seconds=4, rate_hz=5) -> RunBlocks:
 
 def parts(blocks: RunBlocks, model: str) -> AirParts:
     mean = WindowSums(blocks, blocks.n > 0).mean
-    return air_parts(np.array([model == "oblique"]), lambda n: mean(f"log1_{n}"), FRONT, SIDE)
+    return compute_air_parts(
+        np.array([model == "oblique"]), lambda n: mean(f"log1_{n}"), FRONT, SIDE
+    )
 
 
 @given(wind=st.floats(0.1, 12.0), angle=st.floats(0.0, 359.9))
@@ -50,7 +57,7 @@ def test_both_formulas_written_out(wind, angle):
 
 def test_averaging_goes_round_north_and_keeps_the_speed_of_a_jittering_wind():
     angles = np.tile([350.0, 0.0, 10.0, 0.0, 0.0], 4)
-    terms = averaged_terms(blocks_of(6.0, angles), 3)
+    terms = average_terms(blocks_of(6.0, angles), 3)
     assert terms["head_ahead"] == pytest.approx(np.full((1, 4), 36.0), rel=1e-6)
     assert terms["head_behind"] == pytest.approx(np.zeros((1, 4)), abs=1e-12)
     assert terms["side"] == pytest.approx(np.zeros((1, 4)), abs=1e-4)
@@ -60,7 +67,7 @@ def test_coefficients_that_are_searched_stay_between_0_and_1():
     air = AirParts(
         np.array([4.0, 4.0, 4.0, 0.5, 0.0]), np.array([0.0, 0.0, 0.0, -2.0, 0.0]), np.zeros(5)
     )
-    ahead, behind = nearest_coefficients(air, np.array([2.0, 9.0, -1.0, -1.0, 3.0]))
+    ahead, behind = find_nearest_coefficients(air, np.array([2.0, 9.0, -1.0, -1.0, 3.0]))
     assert ahead.tolist() == [0.5, 1.0, 0.0, 0.0, 0.0]
     assert behind.tolist() == [0.0, 0.0, 0.0, 0.5, 0.0]
 
@@ -69,6 +76,6 @@ def test_coefficients_that_are_searched_stay_between_0_and_1():
 def test_a_coefficient_that_suffices_leaves_none_to_the_other(air, share, other):
     # What is left is rounding, and divided by a breath of wind it was anything from 0 to 1.
     parts = AirParts(np.array([air]), np.array([other]), np.zeros(1))
-    ahead, behind = nearest_coefficients(parts, np.array([share * air]))
+    ahead, behind = find_nearest_coefficients(parts, np.array([share * air]))
     assert ahead[0] == pytest.approx(share)
     assert behind[0] == 0.0

@@ -9,7 +9,7 @@ import pytest
 from pipeline.method.definition import find_method_in_force
 from pipeline.method.reading import read_shipped_method
 from pipeline.register.register import CURVE_COLUMNS, LINE
-from pipeline.register.years import register_years, registers_of_years, steps_between
+from pipeline.register.years import find_steps_between, make_registers_of_years, register_years
 
 METHODS = [read_shipped_method(name) for name in ("as-published", "as-published-2014", "rebased")]
 NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
@@ -48,7 +48,7 @@ STEPS = pl.DataFrame(
 
 
 def test_on_every_last_day_the_newest_tow_counts_until_it_expires():
-    found = registers_of_years(HISTORY, METHODS, [2009, 2010, 2013, 2014, 2019, 2020])
+    found = make_registers_of_years(HISTORY, METHODS, [2009, 2010, 2013, 2014, 2019, 2020])
     own = found.filter(method="rebased").select("year", "tow_id").rows()
     assert own == [(2010, "2010"), (2013, "2010"), (2014, "2014"), (2019, "2014")]
     assert set(found.columns) == {"year", "edition", "method", *LINE, *CURVE_COLUMNS}
@@ -68,10 +68,10 @@ def test_an_error_of_old_tows_shows_in_the_years_in_which_they_counted():
 def test_the_register_of_2014_is_that_of_before_the_recomputation():
     found = [find_method_in_force(season, METHODS).name for season in (2013, 2014, 2015)]
     assert found == ["as-published-2014", "as-published-2014", "as-published"]
-    of_2014 = steps_between(STEPS, "as-published-2014", "rebased", by_way_of="as-published")
+    of_2014 = find_steps_between(STEPS, "as-published-2014", "rebased", by_way_of="as-published")
     own = of_2014.filter(tow_id="2014")
     assert own.select("step", "factor").rows() == [("window", pytest.approx(1.0))]
-    of_2015 = steps_between(STEPS, "as-published", "rebased", by_way_of="as-published")
+    of_2015 = find_steps_between(STEPS, "as-published", "rebased", by_way_of="as-published")
     assert of_2015.filter(tow_id="2014")["factor"].item() == pytest.approx(1 / 0.98)
 
 

@@ -58,6 +58,6 @@ def test_the_hash_is_of_the_bytes(monkeypatch, tmp_path):
         (tmp_path / name).write_text(text)
     monkeypatch.setattr(code, "_ROOT", tmp_path)
     monkeypatch.setattr(code, "_modules", lambda _: list(tmp_path.glob("*.py")))
-    before = code.code_hash.__wrapped__("any")
+    before = code.hash_code.__wrapped__("any")
     (tmp_path / "b.py").write_text("y = 3\n")
-    assert code.code_hash.__wrapped__("any") != before
+    assert code.hash_code.__wrapped__("any") != before

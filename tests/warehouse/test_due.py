@@ -7,7 +7,7 @@ import pytest
 
 from dashboards.words import CODES
 from pipeline.register.due import NOT_RACED
-from pipeline.register.register import draft_name
+from pipeline.register.register import name_draft
 from warehouse.store.decisions import FILE_NAME
 
 METHOD = "rebased-2015"
@@ -49,7 +49,7 @@ def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
     assert raced["as_of"] == day
     assert raced["raced_speed_m_s"] == pytest.approx(5.0)
     assert raced["speed_reason"] != NOT_RACED
-    draft = pl.col("edition") == draft_name(METHOD)
+    draft = pl.col("edition") == name_draft(METHOD)
     for table in ("register", "register_history"):
         assert due["tow_id"][1] not in bench.table(table).filter(draft)["tow_id"].to_list()
     assert due["tow_id"][1] not in after["tow_id"].to_list()

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from pipeline.errors import BrokenPromiseError
-from warehouse.store.editions import edition_names, write_folder
+from warehouse.store.editions import list_edition_names, write_folder
 from warehouse.store.files import write_folder_beside
 from warehouse.store.store import Store
 
@@ -80,7 +80,7 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(tmp_path):
         write_folder(store, "x", lambda: CONTENTS)
     store.editions.unlink()
     write_folder(store, "x", lambda: CONTENTS)
-    assert edition_names(store) == ["x"]
+    assert list_edition_names(store) == ["x"]
 
 
 def test_a_folder_is_replaced_whole_and_after_an_error_the_older_one_is_there(tmp_path):

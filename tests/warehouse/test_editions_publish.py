@@ -18,15 +18,15 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.reading import read_shipped_method
 from pipeline.register.register import LINE
 from tests.warehouse.edition_bench import diff, terms
-from warehouse.derive.registers import published_tables
+from warehouse.derive.registers import read_published_tables
 from warehouse.editions import publish as publish_module
 from warehouse.editions import sheets
 from warehouse.editions.making import MADE
-from warehouse.editions.publish import lines_to_look_at, publish_printed
+from warehouse.editions.publish import list_lines_to_look_at, publish_printed
 from warehouse.editions.verify import verify
 from warehouse.store.decisions import FILE_NAME
 from warehouse.store.editions import (
-    edition_names,
+    list_edition_names,
     read_edition,
     read_manifest,
 )
@@ -70,7 +70,7 @@ def test_an_edition_holds_everything_behind_it(published):
     assert edition.method.content_hash == edition.manifest.method_hash == shipped.content_hash
     assert (edition.method.validity, edition.method.extends) == (shipped.validity, None)
     assert edition.manifest.previous == "2014-1"
-    rows = published_tables(published.store)
+    rows = read_published_tables(published.store)
     own = rows["register"].filter(edition="2014-2")
     codes = [*LINE, "verification_code"]
     assert own.select(codes).equals(edition.register.select(codes))
@@ -139,18 +139,20 @@ def test_numbers_in_the_sheet_are_those_of_the_register(published):
 
 def test_a_code_follows_from_inputs_method_and_printed_numbers(published):
     register = edition_of(published).register
-    codes = sheets.verification_codes(register, "m")
-    assert sheets.verification_codes(register, "m") == codes
+    codes = sheets.compute_verification_codes(register, "m")
+    assert sheets.compute_verification_codes(register, "m") == codes
     for changed in (
-        sheets.verification_codes(register, "other"),
-        sheets.verification_codes(register.with_columns(pl.lit("x").alias("inputs_sha256")), "m"),
-        sheets.verification_codes(register.with_columns(pl.col("cw_kg_m") + 0.001), "m"),
+        sheets.compute_verification_codes(register, "other"),
+        sheets.compute_verification_codes(
+            register.with_columns(pl.lit("x").alias("inputs_sha256")), "m"
+        ),
+        sheets.compute_verification_codes(register.with_columns(pl.col("cw_kg_m") + 0.001), "m"),
     ):
         valid = register["cw_kg_m"].is_not_null()
         pairs = zip(codes, changed, valid, strict=True)
         assert all(one != other for one, other, is_valid in pairs if is_valid)
     unseen = register.with_columns(pl.col("cw_kg_m") * (1 + 1e-12))
-    assert sheets.verification_codes(unseen, "m") == codes
+    assert sheets.compute_verification_codes(unseen, "m") == codes
 
 
 # Whole or not at all
@@ -190,7 +192,7 @@ def test_a_full_disk_leaves_nothing(bench_of_editions, monkeypatch):
     monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(BrokenPromiseError, match=r"No space left .* make room"):
         bench_of_editions.publish("2014-1")
-    assert edition_names(bench_of_editions.store) == []
+    assert list_edition_names(bench_of_editions.store) == []
     assert [f for f in bench_of_editions.store.editions.iterdir() if f.is_dir()] == []
 
 
@@ -325,7 +327,7 @@ def test_a_line_whose_newest_tow_has_no_samples_is_named(bench_of_editions):
     line = line_of(bench_of_editions, tow)
     assert (line["tow_id"], line["basis"]) == (tow["tow_id"], "measured")
     assert "newer_tow_without_samples" in line["flags"]
-    look_at = lines_to_look_at(edition_of(bench_of_editions, "x"))
+    look_at = list_lines_to_look_at(edition_of(bench_of_editions, "x"))
     assert tow["tow_id"] in {one["tow_id"] for one in look_at}
     notes = (folder(bench_of_editions, "x") / "notice.md").read_text("utf-8")
     assert "Newest tow without samples.** 1 line rests on an older tow" in notes

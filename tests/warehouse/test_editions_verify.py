@@ -17,7 +17,7 @@ from tests.warehouse.edition_bench import DAY, terms
 from warehouse.editions.lineage import lineage
 from warehouse.editions.publish import publish_printed
 from warehouse.editions.verify import differences, verify
-from warehouse.store.editions import chain_head, find_manifest, read_edition, read_manifest
+from warehouse.store.editions import find_chain_head, find_manifest, read_edition, read_manifest
 from warehouse.store.files import file_sha256
 
 
@@ -279,11 +279,11 @@ def test_a_line_that_is_there_twice_differs(published):
 
 @FILES_ALONE
 def test_the_head_decides_whether_an_edition_was_forged(published_copy):
-    minutes = chain_head(published_copy.store).seal
+    minutes = find_chain_head(published_copy.store).seal
     path = folder(published_copy, "2014-2")
     rewritten(path, "register", **EVERY_LINE)
     sealed_anew(path)
-    forged = chain_head(published_copy.store).seal
+    forged = find_chain_head(published_copy.store).seal
     wrong = [verify(published_copy.store, False, head).wrong for head in (forged, minutes)]
     assert wrong == [False, True]
 

@@ -11,7 +11,7 @@ import pytest
 from pipeline.register.causes import summarise_causes
 from tests.warehouse.edition_bench import diff
 from warehouse.editions.lineage import lineage
-from warehouse.editions.sheets import verification_codes
+from warehouse.editions.sheets import compute_verification_codes
 from warehouse.editions.verify import verify
 from warehouse.store.editions import read_edition
 from warehouse.store.store import Store
@@ -100,7 +100,7 @@ def test_they_are_read_with_the_lines_that_were_printed(store):
 @pytest.mark.parametrize("name", EDITIONS)
 def test_their_verification_codes_follow_from_their_lines(store, name):
     edition = read_edition(store, name)
-    codes = verification_codes(edition.register, edition.manifest.method_hash)
+    codes = compute_verification_codes(edition.register, edition.manifest.method_hash)
     assert codes == edition.register["verification_code"].to_list()
 
 

@@ -22,7 +22,7 @@ from pipeline.method.reading import read_shipped_method
 from tests.warehouse.edition_bench import EditionBench
 from tests.worlds import measure
 from warehouse.derive.plausible import add_doubts
-from warehouse.editions.publish import lines_to_look_at
+from warehouse.editions.publish import list_lines_to_look_at
 from warehouse.store.editions import read_edition
 
 WORLD = WorldSettings(seasons=(2015, 2016, 2017), tows_per_season=10, rate_hz=20, seed=5)
@@ -196,6 +196,6 @@ def test_a_zero_that_is_off_is_doubted_shared_with_nobody_and_not_published(arch
     archive.publish("2018-1", METHOD, dt.date(2018, 1, 1))
     edition = read_edition(archive.store, "2018-1")
     assert tow not in edition.register["tow_id"].drop_nulls().to_list()
-    to_look_at = lines_to_look_at(edition)
+    to_look_at = list_lines_to_look_at(edition)
     assert [line["status"] for line in to_look_at if not line["flags"]] == ["doubted"]
     assert len(to_look_at) < edition.register.height

@@ -12,7 +12,7 @@ import polars as pl
 import pytest
 
 from warehouse.editions.verify import verify
-from warehouse.store.editions import Manifest, chain_head, find_manifest, read_manifest
+from warehouse.store.editions import Manifest, find_chain_head, find_manifest, read_manifest
 from warehouse.store.files import file_sha256
 
 FIRST, SECOND = "2014-1", "2014-2"
@@ -236,7 +236,7 @@ def test_what_is_sealed_anew_is_found_when_it_is_made_again(rebuilt_copy, name):
 
 
 def test_only_the_head_shows_that_the_last_edition_is_gone_before_a_rebuild(published_copy):
-    head = chain_head(published_copy.store).seal
+    head = find_chain_head(published_copy.store).seal
     shutil.rmtree(published_copy.store.editions / SECOND)
     unseen = verify(published_copy.store, afresh=False)
     assert (unseen.wrong, unseen.is_without_head) == (False, True)

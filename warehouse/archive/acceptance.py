@@ -30,7 +30,7 @@ from warehouse.archive.files import (
     TEXT_SUFFIXES,
     ArchiveFile,
     list_files,
-    outside_archive_error,
+    make_outside_archive_error,
     read_bytes,
 )
 from warehouse.archive.kinds import ACCEPTANCES, TOWS
@@ -167,7 +167,7 @@ def compose_line(root: Path, acceptance: Acceptance) -> NewLine:
     else:
         path, target = lists[0].path, lists[0].full_path.resolve()
         if not lists[0].inside:
-            raise outside_archive_error(path)
+            raise make_outside_archive_error(path)
         if target.suffix.lower() not in TEXT_SUFFIXES:
             raise MissingKnowledgeError(
                 "{} is a workbook, to which no line is added. Add the row yourself, or save the "

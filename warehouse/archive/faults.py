@@ -11,7 +11,7 @@ from typing import Final, Literal
 from pipeline.errors import DefectiveInputError
 from pipeline.messages import Sentence, find_cause, say, spoken
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import Faults
 from pipeline.tables.row import Row
 from warehouse.archive.columns import DefectiveHeaderError
@@ -85,9 +85,9 @@ class DefectiveFileError(DefectiveHeaderError):
         self.path = path
 
 
-def fault_frame(faults: Iterable[Fault]) -> dy.DataFrame[Faults]:
+def make_fault_frame(faults: Iterable[Fault]) -> dy.DataFrame[Faults]:
     """Return faults as the table that is stored."""
-    return frame_of(Faults, [fault.to_row() for fault in faults])
+    return make_frame(Faults, [fault.to_row() for fault in faults])
 
 
 def say_at_line(line: int, what: str) -> Sentence:

@@ -119,7 +119,7 @@ def _is_inside(root: Path, full: Path) -> bool:
         return False
 
 
-def outside_archive_error(relative: str) -> DefectiveFileError:
+def make_outside_archive_error(relative: str) -> DefectiveFileError:
     """Return the error for a path that leaves the archive."""
     said = say("'{path}' leads outside the archive, where nothing is read.", path=relative)
     return DefectiveFileError("path_outside_archive", said, None, relative)
@@ -136,7 +136,7 @@ def resolve_inside(root: Path, relative: str) -> Path:
         said = say("'{name}' is not there any more.", name=relative)
         raise DefectiveFileError("samples_missing", said, None, relative)
     if not _is_inside(root, full):
-        raise outside_archive_error(relative)
+        raise make_outside_archive_error(relative)
     return full
 
 

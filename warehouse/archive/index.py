@@ -10,7 +10,7 @@ import polars as pl
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import ListedFiles, ListedRuns, ListedTows
 from warehouse.archive.columns import fold
 from warehouse.archive.faults import Fault, fault_from
@@ -20,7 +20,7 @@ from warehouse.archive.files import (
     fold_file_name,
     hash_files,
     list_files,
-    outside_archive_error,
+    make_outside_archive_error,
 )
 from warehouse.archive.kinds import ACCEPTANCES, BOATS, FORCE_CHECKS, LAMPS, TOWS
 from warehouse.archive.list_rules import (
@@ -119,7 +119,7 @@ def index_archive(
         windows=windows,
         acceptances=acceptances,
         faults=tuple(sorted(faults, key=lambda f: (f.path, f.line or 0, f.tow_id or ""))),
-        files=frame_of(ListedFiles, file_rows),
+        files=make_frame(ListedFiles, file_rows),
         profiles=profiles,
     )
 
@@ -189,7 +189,7 @@ def _find_unlisted_samples(
             fault = Fault(path=file.path, reason_code="samples_not_listed", message=message)
             faults.append(fault)
         else:
-            faults.append(fault_from(outside_archive_error(file.path), file.path))
+            faults.append(fault_from(make_outside_archive_error(file.path), file.path))
     return faults
 
 

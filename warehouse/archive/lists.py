@@ -38,7 +38,7 @@ from warehouse.archive.files import (
     REFUSED_SUFFIXES,
     TEXT_SUFFIXES,
     ArchiveFile,
-    outside_archive_error,
+    make_outside_archive_error,
     read_bytes,
 )
 from warehouse.archive.kinds import REMARK, ListKind
@@ -132,7 +132,7 @@ def read_tables(file: ArchiveFile, columns: Sequence[Column]) -> tuple[list[Tabl
         DefectiveInputError: the file cannot be read.
     """
     if not file.inside:
-        raise outside_archive_error(file.path)
+        raise make_outside_archive_error(file.path)
     if file.full_path.suffix.lower() in REFUSED_SUFFIXES:
         text = say(
             "A {suffix} file, such as an old Excel workbook, is not read: save it as .xlsx "

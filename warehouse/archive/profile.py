@@ -27,7 +27,7 @@ from pipeline.channels import (
 )
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
-from pipeline.toml_text import decoded, parse_toml, problem_in_words
+from pipeline.toml_text import decode_toml, describe_problem, parse_toml
 from warehouse.archive.columns import UNITS, Column, find_unit, fold, fold_word, split_header
 
 PROFILE_FILE: Final = "archief.toml"
@@ -387,7 +387,7 @@ def read_profiles(root: Path) -> Profiles:
     if not path.is_file():
         raise MissingKnowledgeError("{} is no file; remove it, or put the file there", path)
     try:
-        return parse_profiles(decoded(path.read_bytes()))
+        return parse_profiles(decode_toml(path.read_bytes()))
     except ValueError as error:
         raise MissingKnowledgeError("{} is not valid TOML: {}", PROFILE_FILE, error) from error
 
@@ -409,7 +409,7 @@ def parse_profiles(text: str) -> Profiles:
         said = None
         for problem in error.errors(include_input=False):
             key = ".".join(map(str, problem["loc"])) or "file"
-            clause = say("{}: {}", f"'{key}'", problem_in_words(problem))
+            clause = say("{}: {}", f"'{key}'", describe_problem(problem))
             said = clause if said is None else say("{}; {}", said, clause)
         raise MissingKnowledgeError("{}: {}", PROFILE_FILE, said) from error
     except ValueError as error:

@@ -8,7 +8,7 @@ import polars as pl
 
 from pipeline.messages import say
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import column_of, dtypes, limits
+from pipeline.tables.frames import get_declared_column, get_dtypes, limits
 from pipeline.tables.lake import ListedTows
 from warehouse.archive.columns import shorten
 from warehouse.archive.faults import Fault, Lost, say_at_line
@@ -125,7 +125,7 @@ class Rows:
         Args:
             per_file: rows of one file may repeat each other; only those of another are copies.
         """
-        declared = dtypes(self.kind.table)
+        declared = get_dtypes(self.kind.table)
         floats = []
         others = ["season"]
         for key in self.kind.keys:
@@ -186,7 +186,7 @@ def cell(key: str) -> pl.Expr:
 
 def make_empty_rows(kind: ListKind) -> pl.DataFrame:
     """Return the frame of a list without any row."""
-    declared = dtypes(kind.table)
+    declared = get_dtypes(kind.table)
     values = {key: declared.get(key, pl.String()) for key in kind.keys}
     cells = pl.Struct(dict.fromkeys(kind.keys, pl.String))
     place: dict[str, pl.DataType] = {
@@ -201,4 +201,4 @@ def make_empty_rows(kind: ListKind) -> pl.DataFrame:
 
 def find_declared_column(kind: ListKind, key: str) -> dy.Column | None:
     """Return the column as its table declares it; None for one that is only used here."""
-    return column_of(kind.table, key) if key in kind.table.column_names() else None
+    return get_declared_column(kind.table, key) if key in kind.table.column_names() else None

@@ -13,7 +13,7 @@ import polars as pl
 from pipeline.channels import FEWEST_RUNS, SECOND_FILE_OFFSET
 from pipeline.messages import say
 from pipeline.tables.declare import dy
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import ListedRuns
 from warehouse.archive.files import (
     PARTS,
@@ -390,4 +390,4 @@ def plan_runs(
                 run = offset + number
                 selected = run in selections[tow_id]
                 runs.append((tow_id, run, direction, target, selected, plan.seconds))
-    return frame_of(ListedRuns, runs)
+    return make_frame(ListedRuns, runs)

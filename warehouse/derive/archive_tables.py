@@ -11,10 +11,10 @@ from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from pipeline.messages import say
 from pipeline.recompute.facts import add_boat_types
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import Faults, SeasonIndex
 from pipeline.tables.schemas import TABLES, conform
-from warehouse.archive.faults import OF_A_HEADER, fault_frame
+from warehouse.archive.faults import OF_A_HEADER, make_fault_frame
 from warehouse.archive.list_rules import find_windows_outside_run
 from warehouse.derive.plausible import add_doubts, judge, list_gross_faults
 from warehouse.derive.same_samples import CONTENT, find_same_samples
@@ -61,7 +61,7 @@ def archive_tables(
     sound = sound.join(tows, on="tow_id", how="semi")
     runs = runs_read.join(tows, on="tow_id", how="semi")
     windows = listed_windows.join(runs, on=["tow_id", "run"], how="semi")
-    beyond = fault_frame(find_windows_outside_run(windows, present))
+    beyond = make_fault_frame(find_windows_outside_run(windows, present))
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
     known = [name for name in Faults.column_names() if name in index.columns]
     unsound = index.drop_nulls("reason_code").select(known)
@@ -102,12 +102,12 @@ def read_archive(store: Store, root: Path, today: dt.date | None = None) -> None
     tables = intake.index(store, root)
     tows = tables["listed_tows"].sort("season", "tow_id")
     runs = tables["listed_runs"]
-    none = frame_of(SeasonIndex, []).insert_column(0, pl.Series("season", [], pl.Int32))
+    none = make_frame(SeasonIndex, []).insert_column(0, pl.Series("season", [], pl.Int32))
     seasons = tows.partition_by("season", maintain_order=True)
     read = [intake.read_tows(store, root, runs, own) for own in seasons]
     samples = pl.concat([none] + read)
     lake.keep_only(store, samples)
-    blocks = lake.all_blocks(store, samples)
+    blocks = lake.read_all_blocks(store, samples)
     made = archive_tables(
         list_faults=tables["list_faults"],
         listed_boats=tables["listed_boats"],

@@ -19,7 +19,7 @@ from pipeline.blocks.tows import Tows
 from pipeline.messages import say
 from pipeline.tables.declare import dy
 from pipeline.tables.lake import Faults
-from warehouse.archive.faults import Fault, fault_frame
+from warehouse.archive.faults import Fault, make_fault_frame
 
 _SINGLED_OUT: Final = ("tow", "day")
 """Kinds of shifts that exclude their tows from what tows share."""
@@ -65,7 +65,7 @@ def list_gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFra
                 lost="tow",
             )
             faults.append(fault)
-    return fault_frame(faults)
+    return make_fault_frame(faults)
 
 
 def add_doubts(tows: pl.DataFrame, judged: Sequence[Shift]) -> pl.DataFrame:

@@ -16,8 +16,8 @@ from pipeline.method.definition import Method
 from pipeline.recompute.facts import add_boats, add_hand_windows
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.run_cache import RunCache
-from warehouse.archive.faults import Fault, fault_frame
-from warehouse.derive.registers import members_of
+from warehouse.archive.faults import Fault, make_fault_frame
+from warehouse.derive.registers import draw_members
 from warehouse.store.unforeseen import (
     UNFORESEEN,
     format_traceback,
@@ -112,7 +112,7 @@ def recompute_archive(methods: Sequence[Method], archive: ArchiveRuns) -> Recomp
         tables={name: pl.concat([one[name] for one in made]) for name in METHOD_TABLES},
         tows=sound.tows,
         tow_runs=sound.tow_runs,
-        set_aside=fault_frame(faults),
+        set_aside=make_fault_frame(faults),
         failures=pl.DataFrame(
             {"what": list(failures), "trace": list(failures.values())},
             schema={"what": pl.String, "trace": pl.String},
@@ -157,4 +157,4 @@ def _recompute(method: Method, archive: ArchiveRuns, cache: RunCache) -> dict[st
     """Return `METHOD_TABLES` of one method."""
     runs = stack_blocks(archive.blocks, add_hand_windows(archive.tow_runs, archive.hand_windows))
     made = recompute(method, add_boats(archive.tows, archive.boats), runs, cache)
-    return vars(made) | {"ensemble": members_of(method, made)}
+    return vars(made) | {"ensemble": draw_members(method, made)}

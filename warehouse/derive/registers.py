@@ -9,32 +9,32 @@ from collections.abc import Mapping, Sequence
 import polars as pl
 
 from pipeline.method.definition import Method
-from pipeline.recompute.facts import samples_files
+from pipeline.recompute.facts import list_samples_files
 from pipeline.recompute.results import Recomputed
 from pipeline.register import due, replay
-from pipeline.register.causes import steps_of_lines
+from pipeline.register.causes import assign_steps
 from pipeline.register.changes import compare_lines
-from pipeline.register.printed import carried_lines
+from pipeline.register.printed import carry_lines
 from pipeline.register.register import (
     LINE,
     apply_rule,
-    draft_name,
     draft_register,
+    find_reference_day,
+    find_unmeasured_tows,
     flag_unmeasured,
-    lines_of_all_days,
-    reference_day,
-    unmeasured_tows,
+    list_lines_of_all_days,
+    name_draft,
 )
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import RaceChanges, RegisterChanges
 from pipeline.tables.schemas import TABLES, conform
 from pipeline.uncertainty.ensemble import draw_ensemble
-from warehouse.derive.edition_lines import history_rows, lines_in_time
+from warehouse.derive.edition_lines import list_lines_in_time, tabulate_history
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
     CHANGES,
     Edition,
-    edition_names,
+    list_edition_names,
     read_edition,
 )
 from warehouse.store.store import Store
@@ -62,8 +62,8 @@ def register_tables(
     and stands in the draft; else the line is flagged. Drafts are compared with the first method's,
     by the steps from there. The published editions stand beside the drafts.
     """
-    as_of = reference_day(tows, listed_races)
-    unmeasured = unmeasured_tows(listed_tows, printed_registers, tows, as_of)
+    as_of = find_reference_day(tows, listed_races)
+    unmeasured = find_unmeasured_tows(listed_tows, printed_registers, tows, as_of)
     printed = printed_registers.filter("has_valid_curve").sort("season", maintain_order=True)
     lines: dict[str, pl.DataFrame] = {}
     drafts: list[pl.DataFrame] = []
@@ -73,15 +73,15 @@ def register_tables(
     for method in methods:
         own_curves = curves.filter(method=method.name)
         factors = log_factors.filter(method=method.name)
-        carried = carried_lines(printed, factors, method, tows)
+        carried = carry_lines(printed, factors, method, tows)
         rule = method.validity
         on_day = draft_register(own_curves, tows, listed_boats, as_of, rule, decisions, carried)
-        in_time = lines_of_all_days(own_curves, tows, rule, decisions, carried)
+        in_time = list_lines_of_all_days(own_curves, tows, rule, decisions, carried)
         lines[method.name] = flag_unmeasured(on_day, unmeasured, decisions)
         drafts.append(_make_draft(method.name, lines[method.name], tows))
-        histories.append(history_rows(in_time, draft_name(method.name), method.name))
+        histories.append(tabulate_history(in_time, name_draft(method.name), method.name))
         if method != methods[0]:
-            steps = steps_of_lines(drafts[0], ladders.filter(to_method=method.name))
+            steps = assign_steps(drafts[0], ladders.filter(to_method=method.name))
             compared = compare_lines(drafts[0], drafts[-1], steps)
             changes.append(compared.select(RegisterChanges.column_names()))
     register = pl.concat(drafts)
@@ -90,12 +90,12 @@ def register_tables(
         "register": register,
         "register_history": pl.concat(histories),
         "register_changes": pl.concat(changes),
-        "lineage": lineage_rows(register, tows, hashes, code_version()),
+        "lineage": tabulate_lineage(register, tows, hashes, code_version()),
     }
     with_editions = {
         name: pl.concat([conform(name, frame), published[name]]) for name, frame in made.items()
     }
-    return with_editions | {"due_list": due_of_lines(lines, boats, listed_races, as_of)}
+    return with_editions | {"due_list": list_due_lines(lines, boats, listed_races, as_of)}
 
 
 def race_changes(
@@ -114,13 +114,13 @@ def race_changes(
     return pl.concat(frames) if frames else RaceChanges.create_empty()
 
 
-def members_of(method: Method, made: Recomputed) -> pl.DataFrame:
+def draw_members(method: Method, made: Recomputed) -> pl.DataFrame:
     """Return equally likely numbers of every tow: rows of the table `ensemble`."""
     ruled = apply_rule(made.curves, method.validity)
     return draw_ensemble(method.name, made.curves, ruled, made.uncertainty_budget, made.factors)
 
 
-def due_of_lines(
+def list_due_lines(
     lines: Mapping[str, pl.DataFrame], boats: pl.DataFrame, races: pl.DataFrame, as_of: dt.date
 ) -> pl.DataFrame:
     """Return rows of `due_list`, of the lines of each method."""
@@ -135,7 +135,7 @@ def _make_draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.Data
     """Return rows of `register`: the lines of a method with the sizes of the boats."""
     sizes = tows.select("tow_id", pl.col(SIZES))
     return lines.join(sizes, on="tow_id", how="left", maintain_order="left").select(
-        pl.lit(draft_name(method)).alias("edition"),
+        pl.lit(name_draft(method)).alias("edition"),
         pl.lit(method).alias("method"),
         pl.all(),
         pl.lit(None, pl.String).alias("verification_code"),
@@ -145,7 +145,7 @@ def _make_draft(method: str, lines: pl.DataFrame, tows: pl.DataFrame) -> pl.Data
 # Published editions
 
 
-def published_tables(store: Store) -> dict[str, pl.DataFrame]:
+def read_published_tables(store: Store) -> dict[str, pl.DataFrame]:
     """Return rows of `editions`, and of the register's tables and `lineage` of every edition.
 
     Raises:
@@ -153,19 +153,19 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
     """
     names = ("editions", "register", "register_history", CHANGES, "lineage")
     parts: dict[str, list[pl.DataFrame]] = {name: [TABLES[name].create_empty()] for name in names}
-    for name in edition_names(store):
+    for name in list_edition_names(store):
         edition = read_edition(store, name)
         rows = {
             "editions": _describe_edition(edition),
             "register": edition.register,
-            "register_history": lines_in_time(store, edition),
+            "register_history": list_lines_in_time(store, edition),
         }
         if CHANGES in edition.tables:
             rows[CHANGES] = edition.tables[CHANGES]
         if edition.method is not None:
             hashes = {edition.method.name: edition.manifest.method_hash}
             tows, code_version = edition.tables["tows"], edition.manifest.code_version
-            rows["lineage"] = lineage_rows(edition.register, tows, hashes, code_version)
+            rows["lineage"] = tabulate_lineage(edition.register, tows, hashes, code_version)
         for table, frame in rows.items():
             parts[table].append(conform(table, frame))
     return {table: pl.concat(frames) for table, frames in parts.items()}
@@ -179,7 +179,7 @@ def _describe_edition(edition: Edition) -> pl.DataFrame:
     return pl.DataFrame([about | {"interval": interval}]).cast(dict.fromkeys(strings, pl.String))
 
 
-def lineage_rows(
+def tabulate_lineage(
     register: pl.DataFrame, tows: pl.DataFrame, hashes: Mapping[str, str | None], code_version: str
 ) -> pl.DataFrame:
     """Return rows of the table `lineage`: one per line that has a tow and samples file of it.
@@ -191,7 +191,7 @@ def lineage_rows(
         code_version: of the code that made the lines.
     """
     lines = register.drop_nulls("tow_id").select("edition", pl.col(LINE), "tow_id", "method")
-    return lines.join(samples_files(tows), on="tow_id", maintain_order="left").with_columns(
+    return lines.join(list_samples_files(tows), on="tow_id", maintain_order="left").with_columns(
         method_hash=pl.col("method").replace_strict(hashes, return_dtype=pl.String),
         code_version=pl.lit(code_version),
     )

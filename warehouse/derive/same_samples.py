@@ -19,7 +19,7 @@ from pipeline.channels import SECOND_FILE_OFFSET
 from pipeline.messages import say
 from pipeline.tables.keys import LINE
 from pipeline.tables.lake import Faults
-from warehouse.archive.faults import Fault, fault_frame
+from warehouse.archive.faults import Fault, make_fault_frame
 
 CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")
 """Sums of a run that tell it from others."""
@@ -53,7 +53,7 @@ def find_same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     faults: list[Fault] = []
     for _, same in runs.group_by("content", maintain_order=True):
         faults += _find_faults(same)
-    rows = fault_frame(faults)
+    rows = make_fault_frame(faults)
     return rows.unique("tow_id", keep="first", maintain_order=True)
 
 

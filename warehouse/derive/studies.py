@@ -10,7 +10,7 @@ from pipeline.method.definition import Method
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register.register import FIRST_PUBLISHED, STUDIED_METHOD
 from pipeline.studies.ladder import ladder
-from pipeline.studies.options import option_curves, option_effects, tick_effects
+from pipeline.studies.options import cross_ticks, option_curves, option_effects
 from pipeline.tables.declare import dy
 from pipeline.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
 
@@ -38,7 +38,7 @@ def study_tables(
     effects, ticked, ladders = [], [], []
     if method.name in TICKED:
         ticked = [option_curves(method, tows, runs, links, run_cache).with_columns(own)]
-        effects = [tick_effects(ticked[0]).with_columns(own, study=pl.lit(TOOL))]
+        effects = [cross_ticks(ticked[0]).with_columns(own, study=pl.lit(TOOL))]
     if method.name in JUDGED:
         judged = option_effects(method, tows, runs, links, run_cache)
         effects.append(judged.with_columns(own, study=pl.lit(JUDGEMENT)))

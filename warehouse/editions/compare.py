@@ -20,17 +20,17 @@ from pipeline.register.causes import (
     CLOSED_FORM,
     NO_FACTOR,
     REPRODUCTION,
+    assign_steps,
     name_grounds,
-    steps_of_lines,
     summarise_causes,
 )
-from pipeline.register.changes import compare_lines, largest_first
+from pipeline.register.changes import compare_lines, sort_largest_first
 from pipeline.register.printed import rebase_printed
-from pipeline.register.register import LINE, TOW_DAY, tow_days
-from pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from pipeline.register.register import LINE, TOW_DAY, list_tow_days
+from pipeline.register.replay import RaceRules, compare_winners, race_changes, replay
 from pipeline.tables.row import Row
-from warehouse.derive.edition_lines import lines_in_time
-from warehouse.editions.inputs import find_same_tows, tables_of_today
+from warehouse.derive.edition_lines import list_lines_in_time
+from warehouse.editions.inputs import find_same_tows, read_tables_of_today
 from warehouse.store.editions import CHANGES, Edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
@@ -51,7 +51,7 @@ def compare(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return new.tables[CHANGES]
     before, after = _add_printed_tows(old, new), new.register
     ladder = _compute_ladder(store, old, new)
-    parts = steps_of_lines(before, ladder.filter(pl.col("position") > 0))
+    parts = assign_steps(before, ladder.filter(pl.col("position") > 0))
     if old.method is None and new.method is not None:
         printed = _explain_printed_lines(before, ladder, new, new.method)
         parts = pl.concat([printed, parts], how="vertical_relaxed")
@@ -86,7 +86,7 @@ def _add_printed_tows(old: Edition, new: Edition) -> pl.DataFrame:
         return old.register
     tows = new.tables["tows"]
     once = (
-        tow_days(tows)
+        list_tow_days(tows)
         .with_columns(tows["tow_id"])
         .unique(TOW_DAY, keep="none", maintain_order=True)
     )
@@ -106,7 +106,7 @@ def _compute_ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     no_ladder = CorrectionSteps.create_empty()
     if new.method is None or old.manifest.method_hash == new.manifest.method_hash:
         return no_ladder
-    today = tables_of_today(store)
+    today = read_tables_of_today(store)
     there = pl.col("tow_id").is_in(list(find_same_tows(new.tables, today)))
     tows, runs = today["tows"].filter(there), today["tow_runs"].filter(there)
     start = old.method
@@ -116,7 +116,7 @@ def _compute_ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         start = find_method_in_force(printed_in, [known.get(name) for name in known.names])
     if tows.is_empty() or start is None:
         return no_ladder
-    blocks = stack_blocks(intake.all_blocks(store), runs)
+    blocks = stack_blocks(intake.read_all_blocks(store), runs)
     before = old.tables.get("tow_instruments")
     after = new.tables.get("tow_instruments")
     is_known = after is not None and (before is not None or old.method is None)
@@ -223,7 +223,7 @@ def report(old: Edition, new: Edition, lines: pl.DataFrame) -> DiffReport:
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
         causes=summarise_causes(compared),
-        largest=_list_rows(largest_first(moved).head(LARGEST)),
+        largest=_list_rows(sort_largest_first(moved).head(LARGEST)),
         rows=_list_rows(lines),
     )
 
@@ -238,13 +238,13 @@ def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules
     if store.read_fingerprint("listed_races") is None or not store.count_rows("listed_races"):
         return without_races
     results = store.read("listed_races")
-    before = replay(lines_in_time(store, old), results, rules)
-    after = replay(lines_in_time(store, new), results, rules)
+    before = replay(list_lines_in_time(store, old), results, rules)
+    after = replay(list_lines_in_time(store, new), results, rules)
     members = new.tables.get("ensemble", pl.DataFrame())
     return replace(
         without_races,
         races=race_changes(before, after).to_dicts(),
-        winners=winner_changes(before, after, members).to_dicts(),
+        winners=compare_winners(before, after, members).to_dicts(),
     )
 
 

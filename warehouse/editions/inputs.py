@@ -39,12 +39,12 @@ def add_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
     return tows.with_columns(pl.Series(INPUTS_HASH, hashes, pl.String))
 
 
-def tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
+def read_tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
     """Return `tows`, with the hash of their inputs, and `tow_runs` of the warehouse as it is."""
     from warehouse.intake import seasons as intake  # noqa: PLC0415 - all that reads archives
 
-    runs = intake.runs_with_windows(store)
-    return {"tows": add_input_hashes(intake.typed_tows(store), runs), "tow_runs": runs}
+    runs = intake.read_runs_with_windows(store)
+    return {"tows": add_input_hashes(intake.read_typed_tows(store), runs), "tow_runs": runs}
 
 
 def find_same_tows(

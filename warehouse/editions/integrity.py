@@ -11,7 +11,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.messages import Sentence, say
-from pipeline.recompute.facts import samples_files
+from pipeline.recompute.facts import list_samples_files
 from pipeline.tables.row import Row
 from warehouse.archive import FileHashes
 from warehouse.editions.inputs import list_sources
@@ -22,13 +22,13 @@ from warehouse.store.editions import (
     METHOD,
     PARQUET,
     Manifest,
-    edition_names,
     find_manifest,
     has_doubled_key,
     is_edition_name,
     is_plain_file,
+    list_edition_names,
+    list_stray_names,
     read_table,
-    stray_names,
 )
 from warehouse.store.files import file_sha256
 from warehouse.store.store import Store
@@ -64,10 +64,10 @@ def check_chain(
     if head is not None and head != seal:
         message = say("the head is {}, and should be {}", seal, head)
         yield Finding("", "altered", "chain", message)
-    for name in stray_names(store):
+    for name in list_stray_names(store):
         message = say("{} lies among the editions and is none", name)
         yield Finding("", "notice", name, message, wrong=False)
-    for name in sorted(_known_editions(store).keys() - set(edition_names(store))):
+    for name in sorted(_known_editions(store).keys() - set(list_edition_names(store))):
         yield Finding(name, "altered", name, say("edition {} was published and is gone", name))
     in_order = sorted(manifests.values(), key=lambda m: (m.number or 0, m.edition))
     chained = [manifest for manifest in in_order if manifest.number is not None]
@@ -203,7 +203,7 @@ def check_sources(
     if f"tows{PARQUET}" in manifest.files:
         try:
             tows = read_table(path, "tows")
-            sources = sources | dict(samples_files(tows).select("path", "sha256").rows())
+            sources = sources | dict(list_samples_files(tows).select("path", "sha256").rows())
         except READING_ERRORS as error:
             yield unchecked(path.name, error)
     for file, sha256 in sorted(sources.items()):

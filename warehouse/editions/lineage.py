@@ -12,7 +12,7 @@ from pipeline.register.register import LINE
 from pipeline.tables.row import Row
 from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed
 from warehouse.store.boats import choose_boat, find_boats
-from warehouse.store.editions import Manifest, edition_path, read_edition
+from warehouse.store.editions import Manifest, get_edition_path, read_edition
 from warehouse.store.store import Store
 
 
@@ -74,4 +74,4 @@ def lineage(store: Store, edition: str, boat: str) -> Lineage:
         )
     said = Manifest.model_fields.keys() - {"files"}
     about = published.manifest.model_dump(mode="json", include=said)
-    return Lineage(about, str(edition_path(store, edition)), lines)
+    return Lineage(about, str(get_edition_path(store, edition)), lines)

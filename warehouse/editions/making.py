@@ -20,22 +20,22 @@ from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method.definition import Method
 from pipeline.method.writing import write_method_text
 from pipeline.recompute.recompute import recompute
-from pipeline.register.printed import NOT_REBASED, carried_lines
+from pipeline.register.printed import NOT_REBASED, carry_lines
 from pipeline.register.register import (
     LINE,
     NEWER_TOW_UNMEASURED,
     TOW_DAY,
     draft_register,
+    find_unmeasured_tows,
     flag_unmeasured,
-    unmeasured_tows,
 )
 from pipeline.tables.archive import Boats
-from pipeline.tables.frames import dtypes
+from pipeline.tables.frames import get_dtypes
 from pipeline.tables.keys import SIZES
 from pipeline.tables.register import Register
 from pipeline.tables.schemas import conform
 from warehouse.derive.edition_lines import read_decisions_of_edition
-from warehouse.derive.registers import members_of
+from warehouse.derive.registers import draw_members
 from warehouse.editions import notes, sheets
 from warehouse.editions import printed as prints
 from warehouse.editions.compare import compare
@@ -43,7 +43,7 @@ from warehouse.editions.inputs import (
     INPUTS_HASH,
     JUDGED,
     list_sources,
-    tables_of_today,
+    read_tables_of_today,
 )
 from warehouse.intake import seasons as intake
 from warehouse.store import decisions as decided
@@ -51,15 +51,15 @@ from warehouse.store import editions as folder
 from warehouse.store.editions import (
     Edition,
     Manifest,
-    edition_path,
+    get_edition_path,
     read_edition,
 )
 from warehouse.store.store import Store
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
 LINE_SCHEMA: Final = (
-    dtypes(Register)
-    | {name: dtypes(Boats)[name] for name in BOAT_FACTS}
+    get_dtypes(Register)
+    | {name: get_dtypes(Boats)[name] for name in BOAT_FACTS}
     | {INPUTS_HASH: pl.String(), "basis": pl.String()}
 )
 """Columns of a line of an edition."""
@@ -86,7 +86,7 @@ def make_edition(
         MissingKnowledgeError: a decision is about a tow that is not in the warehouse.
     """
     decisions = decided.tabulate_decisions(decisions_up_to(store, manifest.published_on))
-    today = tables_of_today(store)
+    today = read_tables_of_today(store)
     unknown = decisions.join(today["tows"], on="tow_id", how="anti")["tow_id"].to_list()
     if unknown:
         raise MissingKnowledgeError(
@@ -98,7 +98,7 @@ def make_edition(
     crews = store.read("listed_boats")
     printed = store.read("printed_registers")
     listed = store.read("listed_tows")
-    unmeasured = unmeasured_tows(listed, printed, today["tows"], manifest.valid_from)
+    unmeasured = find_unmeasured_tows(listed, printed, today["tows"], manifest.valid_from)
     return _recompute(store, manifest, method, today, decisions, crews, unmeasured, counting)
 
 
@@ -124,14 +124,14 @@ def make_again(store: Store, edition: Edition) -> Edition:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
     manifest = edition.manifest
     if edition.method is None:
-        path = edition_path(store, manifest.edition)
+        path = get_edition_path(store, manifest.edition)
         registers = list(list_sources(path, manifest))
         if len(registers) != 1:
             raise BrokenPromiseError("{} does not say which printed register it is", path.name)
         return add_changes(store, make_printed(store, manifest, registers[0]))
     own = edition.tables["tows"]
     judged = own.select("tow_id", pl.selectors.by_name(JUDGED, require_all=False))
-    today = tables_of_today(store)
+    today = read_tables_of_today(store)
     runs = today["tow_runs"].join(own, on="tow_id", how="semi")
     tows = today["tows"].join(own, on="tow_id", how="semi").drop(JUDGED, strict=False)
     tows = tows.join(judged, on="tow_id", maintain_order="left")
@@ -176,7 +176,7 @@ def _recompute(
 ) -> Edition:
     """Compute all tables of an edition from tows and runs; `inputs` holds both tables."""
     tows, runs = inputs["tows"], inputs["tow_runs"]
-    blocks = stack_blocks(intake.all_blocks(store), runs)
+    blocks = stack_blocks(intake.read_all_blocks(store), runs)
     made = recompute(method, tows, blocks, with_bands=False)
     carried = _read_carried_lines(store, manifest, method, made.log_factors, tows)
     draft = draft_register(
@@ -198,7 +198,7 @@ def _recompute(
         )
     )
     lines = flag_unmeasured(lines, unmeasured, decisions)
-    members = conform("ensemble", members_of(method, made))
+    members = conform("ensemble", draw_members(method, made))
     tables = inputs | {name: conform(name, getattr(made, name)) for name in MADE}
     tables["ensemble"] = members.join(lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi")
     tables["register"] = _complete_lines(store, lines, manifest, method)
@@ -221,7 +221,7 @@ def _read_carried_lines(
             "edition {} was recomputed; only lines of an edition as printed can be carried over",
             printed.manifest.edition,
         )
-    return carried_lines(printed.register, log_factors, method, tows)
+    return carry_lines(printed.register, log_factors, method, tows)
 
 
 def _complete_lines(
@@ -239,7 +239,7 @@ def _complete_lines(
     missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
     full = named.with_columns(missing).select(LINE_SCHEMA.keys()).cast(pl.Schema(LINE_SCHEMA))
     full = full.sort(LINE)
-    codes = sheets.verification_codes(full, None if method is None else method.content_hash)
+    codes = sheets.compute_verification_codes(full, None if method is None else method.content_hash)
     coded = full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
     conform("register", coded)
     return coded
@@ -248,7 +248,7 @@ def _complete_lines(
 # Files
 
 
-def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
+def make_sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
     """Write the sheets, method and decisions of an edition, by file name."""
     contents = {
         folder.CSV: sheets.encode_csv(edition.register, sheets.SHEET_FIELDS),
@@ -264,9 +264,9 @@ def sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
     return contents
 
 
-def edition_files(store: Store, edition: Edition) -> dict[str, bytes]:
+def make_edition_files(store: Store, edition: Edition) -> dict[str, bytes]:
     """Write all files of an edition, last its manifest."""
-    contents = sheet_files(store, edition)
+    contents = make_sheet_files(store, edition)
     for name, text in notes.texts(edition, _read_previous(store, edition)).items():
         contents[name] = text.encode("utf-8")
     for name, frame in edition.tables.items():

@@ -17,7 +17,7 @@ PRINTED_METHOD: Final = "as-printed"
 NO_VALID_CURVE: Final = "no_valid_curve"
 
 
-def printed_path(store: Store, season: int) -> str:
+def find_printed_path(store: Store, season: int) -> str:
     """Return the file of the register printed in a season, to be published whole.
 
     Raises:

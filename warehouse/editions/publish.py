@@ -16,22 +16,22 @@ from pipeline.method.definition import Method
 from pipeline.register.register import (
     DOUBTED,
     LINE,
-    draft_name,
-    reference_day,
+    find_reference_day,
+    name_draft,
 )
 from pipeline.tables.row import Row
 from warehouse.editions import printed as prints
 from warehouse.editions.inputs import (
     list_files,
 )
-from warehouse.editions.making import add_changes, edition_files, make_edition, make_printed
+from warehouse.editions.making import add_changes, make_edition, make_edition_files, make_printed
 from warehouse.store.code import code_version
 from warehouse.store.editions import (
     Edition,
     Manifest,
-    chain_head,
     check_new_name,
-    edition_names,
+    find_chain_head,
+    list_edition_names,
     read_edition,
     read_manifest,
     write_folder,
@@ -103,14 +103,14 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Path:
             of it cannot be read.
     """
     _check_terms(store, terms)
-    path = prints.printed_path(store, season)
+    path = prints.find_printed_path(store, season)
     listed = store.read("listed_files").filter(pl.col("path") == path)
     sources = dict(listed.select("path", "sha256").rows())
     manifest = _make_manifest(store, terms, sources, printed_in=season)
     return _write(store, make_printed(store, manifest, path))
 
 
-def drafted(
+def draft_edition(
     store: Store,
     method: Method,
     valid_from: dt.date | None = None,
@@ -125,15 +125,15 @@ def drafted(
             left out.
         counting: statuses of lines that have numbers; with `expired` all of history has.
     """
-    day = valid_from or reference_day(store.read("tows"), store.read("listed_races"))
-    terms = Terms(draft_name(method.name), day, "", dt.date.today())
+    day = valid_from or find_reference_day(store.read("tows"), store.read("listed_races"))
+    terms = Terms(name_draft(method.name), day, "", dt.date.today())
     manifest = _make_manifest(store, terms, list_files(store), method)
     return make_edition(store, manifest, method, counting)
 
 
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
     """Return the edition that counted last before a day; None if there is none."""
-    known = [read_manifest(store.editions / name) for name in edition_names(store)]
+    known = [read_manifest(store.editions / name) for name in list_edition_names(store)]
     earlier = [m for m in known if (m.valid_from, m.published_on) <= (valid_from, published_on)]
     if not earlier:
         return None
@@ -161,10 +161,12 @@ def published(store: Store, folder: Path) -> Published:
     """Return the summary of an edition that was just published."""
     edition = read_edition(store, folder.name)
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
-    return Published(edition.manifest, str(folder), dict(counts.rows()), lines_to_look_at(edition))
+    return Published(
+        edition.manifest, str(folder), dict(counts.rows()), list_lines_to_look_at(edition)
+    )
 
 
-def lines_to_look_at(edition: Edition) -> list[Row]:
+def list_lines_to_look_at(edition: Edition) -> list[Row]:
     """Return lines with flags, and those left without numbers because their tows are doubted."""
     to_look_at = (pl.col("flags").list.len() > 0) | (pl.col("status") == DOUBTED)
     lines = edition.register.filter(to_look_at)
@@ -209,10 +211,10 @@ def _write(store: Store, edition: Edition) -> Path:
     compared = add_changes(store, edition)
 
     def contents() -> dict[str, bytes]:
-        head = chain_head(store)
+        head = find_chain_head(store)
         number, seal = (0, None) if head is None else (head.number or 0, head.seal)
         place = {"number": number + 1, "after_seal": seal}
         manifest = edition.manifest.model_copy(update=place)
-        return edition_files(store, replace(compared, manifest=manifest))
+        return make_edition_files(store, replace(compared, manifest=manifest))
 
     return write_folder(store, edition.manifest.edition, contents)

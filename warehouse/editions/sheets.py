@@ -105,7 +105,7 @@ def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     return pl.DataFrame(columns)
 
 
-def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str]:
+def compute_verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str]:
     """Return the code of every line: ten letters and digits that follow from all that made it.
 
     Args:

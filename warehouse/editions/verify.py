@@ -35,7 +35,7 @@ from warehouse.editions.integrity import (
     check_sources,
     unchecked,
 )
-from warehouse.editions.making import make_again, sheet_files
+from warehouse.editions.making import make_again, make_sheet_files
 from warehouse.store.decisions import FILE_NAME as DECISIONS
 from warehouse.store.editions import (
     CHANGES,
@@ -43,14 +43,14 @@ from warehouse.store.editions import (
     PARQUET,
     XLSX,
     Edition,
-    chain_head,
-    edition_path,
+    find_chain_head,
     find_manifest,
+    get_edition_path,
     is_plain_file,
     read_edition,
-    readable_manifests,
+    read_manifests,
 )
-from warehouse.store.store import Store, archive_root
+from warehouse.store.store import Store, find_archive_root
 
 SAME_NUMBER: Final = 1e-9
 """Difference up to which a number made again is the same, as a part of the largest of its column.
@@ -114,14 +114,14 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
         head: the seal of the last edition as it was written down. Where it is still that, no
             edition was altered, and what comes out otherwise is the work of other code.
     """
-    manifests, damaged = readable_manifests(store)
-    last = chain_head(store)
+    manifests, damaged = read_manifests(store)
+    last = find_chain_head(store)
     seal = None if last is None else last.seal
     findings = list(check_chain(store, manifests, seal, head))
     for name, error in damaged.items():
         where = find_manifest(store.editions / name).name
         findings.append(Finding(name, "altered", where, str(error)))
-    archive = archive_root(store)
+    archive = find_archive_root(store)
     hashes = FileHashes() if afresh else FileHashes.load(store.file_hashes)
     can_be_read = []
     for name, manifest in manifests.items():
@@ -249,8 +249,8 @@ def _compare_table(edition: Edition, again: Edition, table: str) -> Iterator[Fin
 
 def _compare_sheets(store: Store, edition: Edition) -> Iterator[Finding]:
     """Find sheets and lists that do not say what the tables of the edition say."""
-    name, path = edition.manifest.edition, edition_path(store, edition.manifest.edition)
-    for file, content in sorted(sheet_files(store, edition).items()):
+    name, path = edition.manifest.edition, get_edition_path(store, edition.manifest.edition)
+    for file, content in sorted(make_sheet_files(store, edition).items()):
         found = (path / file).read_bytes() if (path / file).exists() else b""
         if file == XLSX:
             is_same = sheets.shows_the_same(found, edition.register, sheets.SHEET_FIELDS)

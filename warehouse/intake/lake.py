@@ -21,12 +21,12 @@ from pipeline.blocks.run_blocks import BLOCK_SCHEMA
 from pipeline.blocks.sums import block_sums
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import DefectiveInputError, UnavailableError
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import SeasonIndex
 from pipeline.tables.row import Row
 from warehouse.archive import Fault, FileHashes, SeasonProfile, fault_from
 from warehouse.intake.reading import read_samples
-from warehouse.store.code import ADDING, READING, code_hash
+from warehouse.store.code import ADDING, READING, hash_code
 from warehouse.store.store import (
     DamagedFileError,
     Store,
@@ -85,10 +85,10 @@ def read_tows(
     workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
     with ThreadPoolExecutor(workers) as pool:
         rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
-    return frame_of(SeasonIndex, rows)
+    return make_frame(SeasonIndex, rows)
 
 
-def all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
+def read_all_blocks(store: Store, index: pl.DataFrame) -> pl.DataFrame:
     """Return the blocks of all sound tows, sorted by season, tow, run and second.
 
     Args:
@@ -197,9 +197,9 @@ def name_files(tow: Row, runs: pl.DataFrame, profile: SeasonProfile) -> tuple[st
         [tow[name] for name in facts],
         runs.sort("run").rows(),
         dataclasses.asdict(profile),
-        code_hash(*READING),
+        hash_code(*READING),
     )
-    blocks_key = fingerprint(samples_key, tow["sample_rate_hz"], code_hash(*ADDING))
+    blocks_key = fingerprint(samples_key, tow["sample_rate_hz"], hash_code(*ADDING))
     return samples_key, blocks_key
 
 

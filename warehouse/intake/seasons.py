@@ -15,7 +15,7 @@ import polars as pl
 from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from pipeline.errors import MissingKnowledgeError
 from pipeline.recompute.facts import add_boat_types, add_hand_windows
-from pipeline.tables.frames import frame_of
+from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import AboutArchive
 from warehouse.archive import (
     Failure,
@@ -24,7 +24,7 @@ from warehouse.archive import (
     read_published_registers,
     read_races,
 )
-from warehouse.archive.faults import fault_frame
+from warehouse.archive.faults import make_fault_frame
 from warehouse.archive.profile import read_profiles
 from warehouse.intake import lake
 from warehouse.store.store import Store, fingerprint
@@ -68,8 +68,8 @@ def index(store: Store, root: Path) -> dict[str, pl.DataFrame]:
         "listed_files": listed.files,
         "listed_races": races,
         "printed_registers": printed,
-        "list_faults": fault_frame(all_faults),
-        "about_archive": frame_of(AboutArchive, [about]),
+        "list_faults": make_fault_frame(all_faults),
+        "about_archive": make_frame(AboutArchive, [about]),
         "season_profiles": pl.DataFrame(profiles, schema, orient="row"),
     }
 
@@ -128,21 +128,21 @@ def listing(root: Path) -> Listing:
     return files
 
 
-def all_blocks(store: Store, columns: Sequence[str] | None = None) -> pl.DataFrame:
+def read_all_blocks(store: Store, columns: Sequence[str] | None = None) -> pl.DataFrame:
     """Return the blocks of all seasons, or some of their columns."""
     return store.read("blocks", columns=columns)
 
 
-def typed_tows(store: Store) -> pl.DataFrame:
+def read_typed_tows(store: Store) -> pl.DataFrame:
     """Return all sound tows with the type of their boat."""
     return add_boat_types(store.read("tows"), store.read("boats"))
 
 
-def runs_with_windows(store: Store) -> pl.DataFrame:
+def read_runs_with_windows(store: Store) -> pl.DataFrame:
     """Return the runs of all sound tows, with the windows that were given by hand."""
     return add_hand_windows(store.read("tow_runs"), store.read("hand_windows"))
 
 
 def run_blocks(store: Store) -> RunBlocks:
     """Return the runs of all sound tows as arrays, with the windows that were given by hand."""
-    return stack_blocks(all_blocks(store), runs_with_windows(store))
+    return stack_blocks(read_all_blocks(store), read_runs_with_windows(store))

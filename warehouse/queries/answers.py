@@ -11,12 +11,12 @@ import polars as pl
 
 from pipeline.method.definition import COMPLETE
 from pipeline.register.changes import compare_lines
-from pipeline.register.register import LINE, default_method
+from pipeline.register.register import LINE, choose_default_method
 from pipeline.register.replay import (
     RaceRules,
+    compare_winners,
     race_changes,
     replay,
-    winner_changes,
 )
 from pipeline.tables.row import Row
 from warehouse.queries.views import DRAFT, Views
@@ -27,18 +27,18 @@ from warehouse.store.methods import KnownMethods
 PAIR: Final = ("from_edition", "to_edition")
 
 
-def newest_edition(editions: list[str], default: str) -> str:
+def choose_newest_edition(editions: list[str], default: str) -> str:
     """Return the last published edition; else the draft `default`, or else the last of all."""
     draft = default if default in editions or not editions else editions[-1]
     return next((e for e in reversed(editions) if not e.startswith(DRAFT)), draft)
 
 
-def current_edition(views: Views) -> str:
+def choose_current_edition(views: Views) -> str:
     """Return the edition that people ask about: the newest that is published, or the best draft."""
     published = views.table("editions").sort("valid_from", "published_on", "edition")["edition"]
     drafts = set(views.table("register")["edition"]) - set(published)
-    draft = default_method(sorted(drafts)) if drafts else ""
-    return newest_edition(sorted(drafts) + published.to_list(), draft)
+    draft = choose_default_method(sorted(drafts)) if drafts else ""
+    return choose_newest_edition(sorted(drafts) + published.to_list(), draft)
 
 
 def line_changes(views: Views) -> pl.DataFrame:
@@ -85,10 +85,10 @@ def _find_edition(views: Views, name: str, valid_from: dt.date | None) -> Editio
         raise make_unknown_edition_error(name, known)
     if not name.startswith(DRAFT):
         return read_edition(views.store, name)
-    from warehouse.editions.publish import drafted  # noqa: PLC0415 - all that makes an edition
+    from warehouse.editions.publish import draft_edition  # noqa: PLC0415 - all that makes an edition
 
     method = KnownMethods.from_store(views.store).get(name.removeprefix(DRAFT))
-    return drafted(views.store, method, valid_from)
+    return draft_edition(views.store, method, valid_from)
 
 
 def _add_names(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
@@ -240,7 +240,7 @@ _BEST_TO_MEASURED: Final = pl.col("cw_best_kg_m") / pl.col("cw_kg_m")
 tows at one speed it gives that of their best estimates."""
 
 
-def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
+def list_season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     """Return faults of the instruments of a season, certain or possible, by method and season.
 
     Returns:
@@ -258,7 +258,7 @@ def select_own_races(views: Views, old: str | None, edition: str) -> pl.DataFram
     return races.with_columns(size)
 
 
-def race_chances(views: Views, old: str, new: str) -> dict[tuple[str, str], float | None]:
+def estimate_race_chances(views: Views, old: str, new: str) -> dict[tuple[str, str], float | None]:
     """Return how likely another crew wins under the new edition, by race and class.
 
     Returns:
@@ -276,7 +276,7 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
     """Return who wins the races under two editions, and how many results change place.
 
     Returns:
-        Rows of `pipeline.register.replay.winner_changes`; results that change place among those
+        Rows of `pipeline.register.replay.compare_winners`; results that change place among those
         with one under both, and how many those are.
     """
     history, results = views.table("register_history"), views.store.read("listed_races")
@@ -289,4 +289,4 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
         members = read_edition(views.store, new).tables.get("ensemble", members)
     elif views.store.read_fingerprint("ensemble") is not None:
         members = views.store.read("ensemble", new.removeprefix(DRAFT))
-    return winner_changes(before, after, members), (moved, ranked.height)
+    return compare_winners(before, after, members), (moved, ranked.height)

@@ -12,10 +12,10 @@ import duckdb
 import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.register.register import CURVE_COLUMNS, LINE, draft_name, lines_on_days
+from pipeline.register.register import CURVE_COLUMNS, LINE, list_lines_on_days, name_draft
 from pipeline.tables.keys import SIZES
 from pipeline.tables.schemas import TABLES, conform
-from warehouse.derive.registers import due_of_lines, published_tables
+from warehouse.derive.registers import list_due_lines, read_published_tables
 from warehouse.store.editions import CHANGES
 from warehouse.store.store import Store
 
@@ -40,10 +40,10 @@ def overlay_register(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) 
     if not (read["tows"]["tow_date"] <= day).any():
         raise MissingKnowledgeError("the archive has no tow of {} or before", day)
     register = register_on(read["register"], read["register_history"], read["tows"], day)
-    drafts = {m: register.filter(edition=draft_name(m)) for m in read["methods"]["method"]}
+    drafts = {m: register.filter(edition=name_draft(m)) for m in read["methods"]["method"]}
     made = {
         "register": register,
-        "due_list": due_of_lines(drafts, read["boats"], store.read("listed_races"), day),
+        "due_list": list_due_lines(drafts, read["boats"], store.read("listed_races"), day),
         "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
     }
     for name, frame in made.items():
@@ -53,7 +53,7 @@ def overlay_register(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) 
 def overlay_editions(db: duckdb.DuckDBPyConnection, store: Store) -> None:
     """Make a connection answer with the editions of now instead of those that it knows."""
     editions = pl.DataFrame(db.table("editions").pl())["edition"].to_list()
-    for name, published in published_tables(store).items():
+    for name, published in read_published_tables(store).items():
         edition = "to_edition" if name == CHANGES else "edition"
         drafts = pl.DataFrame(db.table(name).pl()).filter(~pl.col(edition).is_in(editions))
         _lay_over(db, name, pl.concat([conform(name, drafts), published]))
@@ -76,7 +76,7 @@ def register_on(
     key = ("edition",) + LINE
     codes = register.select(pl.col(key), "tow_id", "verification_code")
     counted = (
-        lines_on_days(history.sort(key + ("position",)), [day], key)
+        list_lines_on_days(history.sort(key + ("position",)), [day], key)
         .join(tows.select("tow_id", pl.col(SIZES)), on="tow_id", how="left", maintain_order="left")
         .join(codes, on=key + ("tow_id",), how="left", nulls_equal=True, maintain_order="left")
     )

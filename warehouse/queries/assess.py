@@ -102,7 +102,7 @@ def assess(store: Store, archive: Path, tow_id: str, method: Method) -> Assessme
         read_archive(copy, archive)
         if copy.read("listed_tows").filter(tow_id=tow_id).is_empty():
             raise _make_unusable_error(tow_id, copy.read("list_faults"))
-        runs = stack_blocks(intake.all_blocks(copy), intake.runs_with_windows(copy))
+        runs = stack_blocks(intake.read_all_blocks(copy), intake.read_runs_with_windows(copy))
         made = recompute(method, add_boats(copy.read("tows"), copy.read("boats")), runs)
         for name, frame in vars(made).items():
             if name in TABLES:
@@ -124,7 +124,7 @@ def _make_unusable_error(tow_id: str, faults: pl.DataFrame) -> MissingKnowledgeE
 
 
 def _assess_tow(store: Store, tow_id: str, method: str) -> Assessment:
-    tows, curves = intake.typed_tows(store), store.read("curves", method)
+    tows, curves = intake.read_typed_tows(store), store.read("curves", method)
     set_aside = store.read("quarantine").filter(tow_id=tow_id)
     own = tows.filter(tow_id=tow_id).join(
         store.read("boats").select("fsn_no", "name"), on="fsn_no", how="left", maintain_order="left"
@@ -202,7 +202,7 @@ def _get_newest(rows: pl.DataFrame) -> Row | None:
 def _find_unplanned_runs(store: Store, tow_id: str) -> pl.DataFrame:
     """Return the runs in the samples of a tow that its plan does not know, with their log speed."""
     planned = store.read("listed_runs").filter(tow_id=tow_id)["run"]
-    blocks = intake.all_blocks(store, ["tow_id", "run", "n", "log1_v"]).filter(tow_id=tow_id)
+    blocks = intake.read_all_blocks(store, ["tow_id", "run", "n", "log1_v"]).filter(tow_id=tow_id)
     runs = blocks.group_by("run", maintain_order=True).agg(
         log_m_s=pl.col("log1_v").sum() / pl.col("n").sum()
     )

@@ -16,7 +16,7 @@ import polars as pl
 from pipeline.recompute.facts import add_boat_types, add_hand_windows
 from pipeline.register.causes import name_grounds
 from pipeline.register.changes import compare_lines
-from pipeline.register.register import LINE, MEASURED, default_method, draft_name
+from pipeline.register.register import LINE, MEASURED, choose_default_method, name_draft
 from pipeline.tables.row import Row
 from warehouse.editions.inputs import find_same_tows
 from warehouse.store.code import code_version
@@ -87,7 +87,7 @@ class ChangeReport:
         return [line for line in self.lines if line["exceeds_interval"]]
 
 
-def reported_path(store: Store) -> Path:
+def get_reported_path(store: Store) -> Path:
     """Return the folder with the tables of the last report."""
     return store.root / "report" / "last"
 
@@ -105,7 +105,7 @@ def is_reported(store: Store) -> bool:
 def remember(store: Store) -> None:
     """Keep what the next report compares with."""
     if not is_reported(store):
-        with write_folder_beside(reported_path(store)) as beside:
+        with write_folder_beside(get_reported_path(store)) as beside:
             for name, frame in _read_today(store).items():
                 write_parquet(frame, beside / f"{name}.parquet")
 
@@ -119,7 +119,7 @@ def _read_reported_state(store: Store) -> str | None:
 def _read_reported(store: Store, names: Sequence[str] = NEEDED) -> Tables | None:
     """Return tables of the last report; None where there is none, or it is damaged."""
     try:
-        return {name: read_parquet(reported_path(store) / f"{name}.parquet") for name in names}
+        return {name: read_parquet(get_reported_path(store) / f"{name}.parquet") for name in names}
     except (FileNotFoundError, DamagedFileError):
         return None
 
@@ -128,7 +128,7 @@ def _read_today(store: Store) -> Tables:
     """Return the tables of the lake that a report compares."""
     tables = {n: store.read(n) for n in ("boats", "tows", "tow_runs", "hand_windows", "methods")}
     about = {"code_version": code_version(), "database": store.contents(DATABASE_TABLE)}
-    is_draft = pl.col("edition").str.starts_with(draft_name(""))
+    is_draft = pl.col("edition").str.starts_with(name_draft(""))
     return {
         "about": pl.DataFrame([about]),
         "tows": add_boat_types(tables["tows"], tables["boats"]),
@@ -168,7 +168,7 @@ def count_statuses(store: Store) -> Row:
 
     And which tows that a person accepted it doubts since.
     """
-    method = default_method(store.read("methods")["method"].to_list())
+    method = choose_default_method(store.read("methods")["method"].to_list())
     statuses = store.read("curves", method, columns=["status"])["status"]
     counts = {name: int((statuses == name).sum()) for name in STATUSES}
     acceptances = store.read("acceptances", method)
@@ -237,7 +237,7 @@ def _compare_drafts(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
     new_hashes = dict(now["methods"].select("method", "content_hash").iter_rows())
     changed = []
     for method in now["methods"]["method"]:
-        draft = draft_name(method)
+        draft = name_draft(method)
         old = was["register"].filter(edition=draft)
         new = now["register"].filter(edition=draft)
         if old.is_empty() or new.is_empty():
@@ -252,7 +252,7 @@ def _compare_drafts(was: Tables, now: Tables, names: pl.DataFrame) -> list[Row]:
     return changed
 
 
-def last_changes(store: Store) -> ChangeReport | None:
+def read_last_changes(store: Store) -> ChangeReport | None:
     """Return the changes since the last report or, where there are none, the last ones."""
     report = change_report(store)
     if not report.nothing:

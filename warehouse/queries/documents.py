@@ -16,7 +16,7 @@ from pipeline.tables.row import Row
 from warehouse.queries.answers import add_peers, log_known
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import make_unknown_edition_error
-from warehouse.store.editions import edition_names, read_edition
+from warehouse.store.editions import list_edition_names, read_edition
 
 CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64())
 OF_EDITION: Final = ("decision", "valid_from", "published_on", "code_version")
@@ -26,7 +26,7 @@ SMOOTH_SPEEDS: Final = tuple(np.linspace(SPEEDS[0], SPEEDS[-1], 31))
 """Speeds through which the curve is drawn."""
 
 
-def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Row]:
+def read_certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Row]:
     """Return the valid lines of an edition, of one boat or all, with what their certificates say.
 
     All of it comes from the edition's own folder; that of a draft from the database.
@@ -71,7 +71,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Ro
 
 def _read_lines(views: Views, edition: str) -> pl.DataFrame:
     """Return the lines of an edition or draft with their boats, and what held before."""
-    if not edition.startswith(DRAFT) and edition in edition_names(views.store):
+    if not edition.startswith(DRAFT) and edition in list_edition_names(views.store):
         read = read_edition(views.store, edition)
         lines, previous = read.register, read.manifest.previous
         before = lines.clear() if previous is None else read_edition(views.store, previous).register

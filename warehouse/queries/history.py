@@ -20,8 +20,8 @@ from pipeline.method.definition import Method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
 from pipeline.recompute.run_cache import RunCache
-from pipeline.register.register import draft_name, draft_register, reference_day
-from warehouse.intake.seasons import run_blocks, typed_tows
+from pipeline.register.register import draft_register, find_reference_day, name_draft
+from warehouse.intake.seasons import read_typed_tows, run_blocks
 from warehouse.store.store import Store, make_no_warehouse_error
 
 
@@ -56,11 +56,11 @@ class History:
         """
         if store.read_fingerprint("tows") is None:
             raise make_no_warehouse_error(store)
-        tows = typed_tows(store)
+        tows = read_typed_tows(store)
         known = store.read("type_consistency").select("quantity", "difference_that_matters")
         return cls(
             tows=tows,
-            last_day=reference_day(tows, store.read("listed_races")),
+            last_day=find_reference_day(tows, store.read("listed_races")),
             boats=store.read("boats"),
             differences=dict(DIFFERENCES_THAT_MATTER) | dict(known.unique().rows()),
             crews=store.read("listed_boats"),
@@ -75,7 +75,7 @@ class History:
         """
         made = recompute(method, self.tows, self.blocks, self.cache, with_bands=False)
         lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
-        edition = pl.lit(draft_name(method.name)).alias("edition")
+        edition = pl.lit(name_draft(method.name)).alias("edition")
         return Draft(self, method, made, lines.with_columns(edition))
 
 

@@ -14,10 +14,10 @@ import polars as pl
 
 from pipeline import curve
 from pipeline.curve import VALID_RATIO, s_of_height
-from pipeline.register.changes import compare_lines, largest_first
+from pipeline.register.changes import compare_lines, sort_largest_first
 from pipeline.studies.summaries import season_changes
 from warehouse.queries.history import Draft
-from warehouse.queries.views import curve_figure
+from warehouse.queries.views import prepare_curve_figure
 
 LINE_RATIOS: Final = pl.DataFrame({"ratio": np.linspace(VALID_RATIO[0], VALID_RATIO[1], 13)})
 """Speeds at which a curve is drawn / declared speed."""
@@ -40,7 +40,7 @@ class Scenario:
         """
         lines = compare_lines(self.before.register, self.after.register).drop("causes")
         names = self._names
-        return largest_first(lines).join(names, on="fsn_no", how="left", maintain_order="left")
+        return sort_largest_first(lines).join(names, on="fsn_no", how="left", maintain_order="left")
 
     def summary(self) -> dict[str, object]:
         """Return how many lines change, who gains and loses, and by how much."""
@@ -66,10 +66,12 @@ class Scenario:
         return season_changes(curves, self.before.method).sort("season")
 
     def boat_figure(self, fsn_no: str) -> pl.DataFrame:
-        """Return what the figure of a boat's curves draws: see `curve_figure`, at 13 speeds."""
+        """Return what `prepare_curve_figure` draws of a boat's curves, at 13 speeds."""
         curves = self.boat_curves(fsn_no).drop_nulls("cw_kg_m")
         runs = self.both(lambda draft: draft.made.run_points)
-        return pl.concat(curve_figure(_draw_curves(curves), runs, curves).values(), how="diagonal")
+        return pl.concat(
+            prepare_curve_figure(_draw_curves(curves), runs, curves).values(), how="diagonal"
+        )
 
     def boat_curves(self, fsn_no: str) -> pl.DataFrame:
         """Return every curve of a boat under both methods, with the `interval` of the method."""

@@ -12,7 +12,7 @@ import polars as pl
 from pipeline.register.register import LINE
 from warehouse.queries.reports import SIZED_FAULTS
 from warehouse.store.database import open_database
-from warehouse.store.editions import edition_names, edition_path, read_manifest, read_table
+from warehouse.store.editions import get_edition_path, list_edition_names, read_manifest, read_table
 from warehouse.store.store import Store
 
 DRAFT: Final = "concept-"
@@ -26,7 +26,7 @@ class Views:
         self._db = open_database(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
         known = self.table("editions")["edition"]
-        if as_of is None and set(known) == set(edition_names(store)):
+        if as_of is None and set(known) == set(list_edition_names(store)):
             return
         from warehouse.queries import as_of as overlays  # noqa: PLC0415 - all that makes registers
 
@@ -72,8 +72,8 @@ class Views:
         """Return the lines of every edition with name and type of the boat."""
         lines = self.ask("register")
         key = ("edition",) + LINE
-        for edition in edition_names(self.store):
-            own = read_table(edition_path(self.store, edition), "register")
+        for edition in list_edition_names(self.store):
+            own = read_table(get_edition_path(self.store, edition), "register")
             own = own.select(pl.col(key), "name", "boat_type")
             lines = lines.update(own, on=key, include_nulls=True)
         called = pl.col("name").str.to_lowercase()
@@ -83,7 +83,7 @@ class Views:
         """Return whether the tows behind an edition or draft are simulated."""
         if edition.startswith(DRAFT):
             return self.about().get("simulated") == "true"
-        return read_manifest(edition_path(self.store, edition)).simulated
+        return read_manifest(get_edition_path(self.store, edition)).simulated
 
     def type_names(self) -> list[str]:
         """Return the types of the listed boats, sorted."""
@@ -94,7 +94,7 @@ class Views:
         return self.ask("race_days").rows()
 
 
-def curve_figure(
+def prepare_curve_figure(
     lines: pl.DataFrame, runs: pl.DataFrame, curves: pl.DataFrame
 ) -> dict[str, pl.DataFrame]:
     """Return rows of the figure `resistance_curve`, by their `kind`.

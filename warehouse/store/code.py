@@ -24,7 +24,7 @@ COMPUTING: Final = ("pipeline", "warehouse.archive", "warehouse.derive")
 
 
 @cache
-def code_hash(*packages: str) -> str:
+def hash_code(*packages: str) -> str:
     """Hash of the modules in some packages, with their paths."""
     hashed = hashlib.sha256()
     files: list[Path] = []
@@ -42,7 +42,7 @@ def code_version() -> str:
     The hash needs no git and is equal wherever the same source is installed. Two lines with equal
     inputs, method and code version are equal.
     """
-    return f"{metadata.version('herijk')}+{code_hash(*READING, *COMPUTING)}"
+    return f"{metadata.version('herijk')}+{hash_code(*READING, *COMPUTING)}"
 
 
 _ROOT: Final = Path(__file__).parents[2]

@@ -128,7 +128,7 @@ class Edition:
         return self.tables["register"]
 
 
-def edition_names(store: Store) -> list[str]:
+def list_edition_names(store: Store) -> list[str]:
     """Return the published editions, sorted, without any that is still being written.
 
     An empty folder is none.
@@ -137,10 +137,10 @@ def edition_names(store: Store) -> list[str]:
     return sorted(path.name for path in folders if any(path.iterdir()))
 
 
-def stray_names(store: Store) -> list[str]:
+def list_stray_names(store: Store) -> list[str]:
     """Return names among the editions that are none: files, and empty folders."""
     names = {path.name for path in store.editions.glob("[!.]*")}
-    return sorted(names - set(edition_names(store)))
+    return sorted(names - set(list_edition_names(store)))
 
 
 def is_plain_file(path: Path) -> bool:
@@ -157,14 +157,14 @@ def is_edition_name(name: str) -> bool:
     return _NAME.fullmatch(name) is not None and not name.startswith("concept-")
 
 
-def edition_path(store: Store, edition: str) -> Path:
+def get_edition_path(store: Store, edition: str) -> Path:
     """Return the folder of a published edition.
 
     Raises:
         MissingKnowledgeError: there is none of that name.
     """
-    if edition not in edition_names(store):
-        known = ", ".join(edition_names(store)) or say("none yet")
+    if edition not in list_edition_names(store):
+        known = ", ".join(list_edition_names(store)) or say("none yet")
         raise MissingKnowledgeError("there is no edition {}; published: {}", edition, known)
     return store.editions / edition
 
@@ -231,10 +231,10 @@ def has_doubled_key(content: bytes) -> bool:
     return is_doubled
 
 
-def readable_manifests(store: Store) -> tuple[dict[str, Manifest], dict[str, BrokenPromiseError]]:
+def read_manifests(store: Store) -> tuple[dict[str, Manifest], dict[str, BrokenPromiseError]]:
     """Return the manifests of all editions by folder name, and the errors of damaged ones."""
     manifests, errors = {}, {}
-    for name in edition_names(store):
+    for name in list_edition_names(store):
         try:
             manifests[name] = read_manifest(store.editions / name)
         except BrokenPromiseError as error:
@@ -242,9 +242,9 @@ def readable_manifests(store: Store) -> tuple[dict[str, Manifest], dict[str, Bro
     return manifests, errors
 
 
-def chain_head(store: Store) -> Manifest | None:
+def find_chain_head(store: Store) -> Manifest | None:
     """Return the edition published last; None before the first that is chained."""
-    chained = [m for m in readable_manifests(store)[0].values() if m.number is not None]
+    chained = [m for m in read_manifests(store)[0].values() if m.number is not None]
     return max(chained, key=lambda manifest: manifest.number or 0, default=None)
 
 
@@ -256,7 +256,7 @@ def read_edition(store: Store, edition: str) -> Edition:
             code of today.
         BrokenPromiseError: a file is missing or damaged.
     """
-    path = edition_path(store, edition)
+    path = get_edition_path(store, edition)
     manifest = read_manifest(path)
     names = [name.removesuffix(PARQUET) for name in manifest.files if name.endswith(PARQUET)]
     tables = {name: read_table(path, name) for name in names}

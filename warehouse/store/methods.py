@@ -18,7 +18,7 @@ from pipeline.method.reading import (
     read_shipped_method,
     read_shipped_text,
 )
-from pipeline.toml_text import decoded
+from pipeline.toml_text import decode_toml
 from warehouse.store.files import write_beside
 from warehouse.store.store import Store
 
@@ -147,6 +147,6 @@ def read_method_file(file: Path) -> str:
     if not file.is_file():
         raise MissingKnowledgeError("there is no method file {}", file)
     try:
-        return decoded(file.read_bytes())
+        return decode_toml(file.read_bytes())
     except ValueError as error:
         raise MethodFileError("{}: {}", file, error) from error

@@ -6,7 +6,7 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.toml_text import decoded, parse_toml, problem_in_words
+from pipeline.toml_text import decode_toml, describe_problem, parse_toml
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -26,13 +26,13 @@ def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
     if not path.exists():
         return model()
     try:
-        return model.model_validate(parse_toml(decoded(path.read_bytes())))
+        return model.model_validate(parse_toml(decode_toml(path.read_bytes())))
     except ValidationError as error:
         shown = not model.model_config.get("hide_input_in_errors")
         first = error.errors(include_input=shown)[0]
         where = f"'{'.'.join(map(str, first['loc']))}'"
         raise MissingKnowledgeError(
-            "{}: {}: {}; it may hold {}", path, where, problem_in_words(first), may_hold
+            "{}: {}: {}; it may hold {}", path, where, describe_problem(first), may_hold
         ) from error
     except ValueError as error:  # also numbers too large, tables too deep
         raise MissingKnowledgeError("{}: not valid TOML: {}", path, error) from error

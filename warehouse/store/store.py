@@ -126,7 +126,7 @@ def digest_contents(name: str, frame: pl.DataFrame) -> str:
     return hashed.hexdigest()
 
 
-def archive_root(store: Store) -> Path | None:
+def find_archive_root(store: Store) -> Path | None:
     """Return where the archive was at the last rebuild; None if it is not there now."""
     if store.read_fingerprint("about_archive") is None:
         return None
