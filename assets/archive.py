@@ -35,7 +35,7 @@ PROGRESS: Final = "herijk.progress"
 @incremental()
 def archive_lists(folders: Folders) -> dict[str, pl.DataFrame]:
     """Boats, tows, races and files of the archive, and what is wrong in the lists."""
-    return seasons.index(folders.store, folders.find_archive_root)
+    return seasons.index(folders.store, folders.archive_root)
 
 
 class SeasonsToRead(dg.Config):
@@ -62,7 +62,7 @@ def samples(
     Files are read in tasks of some tows of a season, side by side. A tow whose file, row of the
     list and profile are those of the last rebuild is not read again.
     """
-    store, root = folders.store, folders.find_archive_root
+    store, root = folders.store, folders.archive_root
     listed = listed_tows["season"].unique().sort().to_list()
     wanted = [season for season in listed if not config.seasons or season in config.seasons]
     if listed and not wanted:

@@ -61,7 +61,7 @@ class Folders(dg.ConfigurableResource["Folders"]):
     )
 
     @property
-    def find_archive_root(self) -> Path:
+    def archive_root(self) -> Path:
         """The archive, as an absolute path: a worker of Dask may work in another folder."""
         return Path(self.archive).resolve()
 

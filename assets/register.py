@@ -66,7 +66,7 @@ def race_changes(
 
 @dg.multi_asset(outs=outs("register_years", "year_winners"), can_subset=True)
 @incremental(may_fail=True)
-def make_registers_of_years(
+def registers_of_years(
     folders: Folders,
     methods: pl.DataFrame,
     register_history: pl.DataFrame,

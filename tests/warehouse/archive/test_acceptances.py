@@ -212,7 +212,7 @@ SENTENCES = st.text("ab é,.;:|'\"\t\r\n()[]{}#=-!?&<>%\\", max_size=60).map("a{
 """What a person may write, not as a formula or a word for nothing."""
 
 
-@settings(max_examples=30)
+@settings(max_examples=10)
 @given(SENTENCES, SENTENCES, st.sets(st.integers(1, 6)), st.sampled_from(list(LISTS)))
 def test_what_a_person_writes_is_added_and_reads_back_equal(written_in, name, note, redo, layout):
     (written_in.root / LIST).write_bytes(LISTS[layout])
@@ -224,7 +224,7 @@ def test_what_a_person_writes_is_added_and_reads_back_equal(written_in, name, no
     assert read(written_in)[1:] == [meant(one_line)]
 
 
-@settings(max_examples=30)
+@settings(max_examples=10)
 @given(st.text(max_size=20), st.text(max_size=20), st.sampled_from(list(LISTS)))
 def test_any_text_is_added_as_it_is_or_refused_before_anything_is_written(
     written_in, name, note, layout
