@@ -333,7 +333,7 @@ _KINDS: Final = {
         "old_remark", "new_remark", "choice", "pooling", "option", "speed_reason", "cause",
         "log", "what", "outcome", "reason_code", "lost", "instrument", "verdict", "rule",
         "confused_with", "rest_verdict", "weight_verdict", "tow_speed_verdict", "kind",
-        "known_checks", "doubted_by",
+        "known_checks", "doubted_by", "current_verdict",
     ),
     Kind.CANDIDATES: ("candidates",),
     Kind.CAUSE: ("main_cause",),
