@@ -16,7 +16,7 @@ KILLED_ANYWHERE = """
 import os, signal, sys
 from pathlib import Path
 from tests.warehouse.test_editions_folder import CONTENTS
-from warehouse.store.editions import edition_names, write_folder
+from warehouse.store.editions import list_edition_names, write_folder
 from warehouse.store.store import Store
 
 STEPS = {"open", "os.mkdir", "os.rename", "os.chmod", "os.rmdir", "os.remove", "os.listdir"}
@@ -47,7 +47,7 @@ while not whole:
         publish_and_die(store, step)
         os._exit(0)
     whole = os.waitpid(child, 0)[1] == 0
-    names = edition_names(store) if store.editions.exists() else []
+    names = list_edition_names(store) if store.editions.exists() else []
     assert names in ([], ["x"]), (step, names)
     if names:
         found = {f.name: f.read_bytes() for f in (store.editions / "x").iterdir()}
