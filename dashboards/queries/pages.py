@@ -261,6 +261,7 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
     """
     views, chosen = results.views, method or results.method
     is_shown = pl.col("method").is_in([*results.methods, chosen])
+    is_compared = pl.col("method").is_in([*results.compared_methods, chosen])
     factors = views.ask("log_factors").filter(is_shown)
     own = factors.filter(method=chosen).drop_nulls("factor")
     by_size = own.sort((pl.col("factor") - 1).abs(), descending=True)
@@ -286,7 +287,7 @@ def read_seasons(results: Results, method: str | None = None) -> Data:
         "levels": diagnosis.filter(is_level),
         "spread": spread.filter(pl.col("scope") != "all"),
         **sum_up_repeats(spread, chosen),
-        "repeat_pairs": results.views.ask("repeat_pairs").filter(is_shown),
+        "repeat_pairs": views.ask("repeat_pairs").filter(is_compared),
         "ladder": _tabulate_ladder(
             views.table("season_ladder").filter(pl.col("to_method").is_in(results.methods))
         ),
