@@ -28,7 +28,7 @@ def get_ink(kind: int) -> str:
 
 SHAPES: Final = (
     "",  # circle: an element of its own
-    "m-3.6 -3.6h7.2v7.2h-7.2z",  # square
+    "m-3.6-3.6h7.2v7.2h-7.2z",  # square
     "m0 -4.8l4.6 8.2h-9.2z",  # triangle
     "m0 -5.2l4.4 5.2l-4.4 5.2l-4.4 -5.2z",  # diamond
     "m-1.6 -4.6h3.2v3h3v3.2h-3v3h-3.2v-3h-3v-3.2h3z",  # cross
@@ -351,7 +351,8 @@ class Plot:
         """Add the area between two lines, in a light shade of an ink."""
         above = list(zip(x, low, strict=True))
         below = list(zip(reversed(x), reversed(high), strict=True))
-        self.add_line([*above, *below], "none", style={"fill": ink, "fill-opacity": 0.22})
+        look = {"fill": ink, "fill-opacity": 0.22}
+        self.add_line([*above, *below], "none", parts=1, style=look)
 
     def add_group(self, attributes: str, marks: str) -> None:
         """Add marks, as SVG, that are shown together."""
