@@ -351,8 +351,7 @@ class Plot:
         """Add the area between two lines, in a light shade of an ink."""
         above = list(zip(x, low, strict=True))
         below = list(zip(reversed(x), reversed(high), strict=True))
-        look = {"fill": ink, "fill-opacity": 0.22}
-        self.add_line([*above, *below], "none", parts=1, style=look)
+        self.add_line([*above, *below], "none", parts=1, style={"fill": ink, "fill-opacity": 0.22})
 
     def add_group(self, attributes: str, marks: str) -> None:
         """Add marks, as SVG, that are shown together."""
