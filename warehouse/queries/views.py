@@ -25,7 +25,8 @@ class Views:
         self.store = store
         self._db = open_database(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
-        known = self.table("editions")["edition"]
+        self._tables: dict[str, pl.DataFrame] = {}
+        known = self.frame("SELECT edition FROM editions")["edition"]
         if as_of is None and set(known) == set(list_edition_names(store)):
             return
         from warehouse.queries import as_of as overlays  # noqa: PLC0415 - all that makes registers
@@ -50,7 +51,9 @@ class Views:
 
     def table(self, name: str) -> pl.DataFrame:
         """Return a whole table, in the order in which it was written."""
-        return self.frame(f'SELECT * FROM "{name}"')  # noqa: S608
+        if name not in self._tables:  # read-only: read once
+            self._tables[name] = self.frame(f'SELECT * FROM "{name}"')  # noqa: S608
+        return self._tables[name]
 
     @cached_property
     def _contents(self) -> dict[str, int]:
