@@ -41,8 +41,12 @@ def choose_current_edition(views: Views) -> str:
     return choose_newest_edition(sorted(drafts) + published.to_list(), draft)
 
 
-def line_changes(views: Views) -> pl.DataFrame:
+def line_changes(views: Views, to_edition: str | None = None) -> pl.DataFrame:
     """Return every pair of lines that is compared: `register_changes` with the numbers of both.
+
+    Args:
+        views: the open database.
+        to_edition: only the pairs of this edition, as the newer of both.
 
     Returns:
         Columns of `compare_lines`, ranks as `old_speed_rank` and `new_speed_rank`, the boat's
@@ -50,6 +54,8 @@ def line_changes(views: Views) -> pl.DataFrame:
         (`old_log_known`, `new_log_known`).
     """
     kept, register = views.table("register_changes"), views.table("register")
+    if to_edition is not None:
+        kept = kept.filter(to_edition=to_edition)
     compared_pairs = [compare_lines(register.clear(), register.clear())]
     for old, new in kept.select(PAIR).unique().sort(PAIR).iter_rows():
         before, after = register.filter(edition=old), register.filter(edition=new)
@@ -160,7 +166,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         - `predicted_cw_kg_m` with its ends: Cw at `predicted_speed_m_s` as the other boats predict
           it without a tow; `cw_there_kg_m` by the tow, and whether it `disagrees`.
     """
-    changes = line_changes(views).filter(to_edition=edition)
+    changes = line_changes(views, edition)
     lines = views.register().filter(edition=edition)
     compared = changes.drop("name", "boat_type", "to_edition", "new_log_known")
     known = log_known(views).rename({"log_known": "new_log_known"})
