@@ -27,11 +27,13 @@ class Views:
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
         self._tables: dict[str, pl.DataFrame] = {}
         known = self.frame("SELECT edition FROM editions")["edition"]
-        if as_of is None and set(known) == set(list_edition_names(store)):
+        has_all_editions = set(known) == set(list_edition_names(store))
+        if has_all_editions and as_of is None:
             return
         from warehouse.queries import as_of as overlays  # noqa: PLC0415 - all that makes registers
 
-        overlays.overlay_editions(self._db, store)
+        if not has_all_editions:
+            overlays.overlay_editions(self._db, store)
         if as_of is not None:
             overlays.overlay_register(self._db, store, as_of)
 
