@@ -20,7 +20,7 @@ from tests.texts import (
     as_file,
     catalogue,
     in_python,
-    without_dutch,
+    list_untranslated,
 )
 
 NL = speaker("nl")
@@ -44,7 +44,7 @@ def test_the_catalogue_holds_what_is_said():
 def test_every_text_has_its_dutch_with_the_same_values():
     with PO.open("rb") as file:
         texts = [m for m in read_po(file, locale="nl") if m.id]
-    assert without_dutch(texts) == [], WHAT_TO_DO
+    assert list_untranslated(texts) == [], WHAT_TO_DO
     pairs = [pair for m in texts for pair in zip(forms(m.id), forms(m.string), strict=True)]
     assert [english for english, dutch in pairs if values(english) != values(dutch)] == []
 

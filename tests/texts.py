@@ -151,7 +151,7 @@ def as_file(texts: Catalog) -> bytes:
     return file.getvalue()
 
 
-def without_dutch(texts: Iterable[Message]) -> list[str]:
+def list_untranslated(texts: Iterable[Message]) -> list[str]:
     """The texts that have no Dutch yet, or of one about several not both forms."""
     bare = [m.id for m in texts if m.id and not (m.string and all(m.string))]
     return [text if isinstance(text, str) else text[0] for text in bare]
@@ -163,7 +163,7 @@ def main(arguments: list[str]) -> None:
     With `--check` it writes nothing, and ends with 1 where either asks for work.
     """
     texts = catalogue()
-    made, bare = as_file(texts), without_dutch(texts)
+    made, bare = as_file(texts), list_untranslated(texts)
     if "--check" not in arguments:
         PO.write_bytes(made)
         sys.stdout.writelines(f"Without Dutch in {PO.relative_to(ROOT)}: {text}\n" for text in bare)

@@ -16,6 +16,7 @@ from dashboards.queries.results import Data, Results
 from pipeline.method.definition import COMPLETE, RUNS_ALONE
 from pipeline.register.causes import summarise_causes
 from pipeline.register.register import name_draft
+from pipeline.tables.keys import UNKNOWN_TYPE
 from pipeline.tables.row import Row
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.documents import (
@@ -189,7 +190,7 @@ def measure_effects(lines: pl.DataFrame, *by: str) -> pl.DataFrame:
     """
     ratio, beyond = pl.col("cw_ratio"), pl.col("exceeds_interval")
     known = lines.filter(ratio.is_not_null()).with_columns(
-        pl.col("boat_type").replace("", None).fill_null("unknown")
+        pl.col("boat_type").replace("", None).fill_null(UNKNOWN_TYPE)
     )
     measures = (
         pl.len().alias("lines"),

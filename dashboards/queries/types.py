@@ -12,7 +12,7 @@ import polars as pl
 from dashboards.addresses import boat_path
 from dashboards.queries.pages import name_ends
 from dashboards.queries.results import Data, Results
-from pipeline.tables.keys import QUANTITIES, TERM_NAMES
+from pipeline.tables.keys import QUANTITIES, TERM_NAMES, UNKNOWN_TYPE
 from pipeline.tables.row import Row
 from warehouse.queries.types import find_type_differences, read_type_facts
 
@@ -184,7 +184,7 @@ def compare_types(results: Results, types: Sequence[str], methods: Sequence[str]
 def _sum_up_repeats(results: Results, boat_type: str, methods: Sequence[str]) -> pl.DataFrame:
     """Return how well the boats of a type repeat, by method, over all their pairs of tows."""
     boats = results.views.table("boats").filter(
-        pl.col("boat_type").fill_null("unknown") == boat_type
+        pl.col("boat_type").fill_null(UNKNOWN_TYPE) == boat_type
     )
     pairs = results.views.table("repeat_pairs").filter(pl.col("method").is_in(methods))
     own = pairs.join(boats, on="fsn_no", how="semi", maintain_order="left")

@@ -25,6 +25,7 @@ from warehouse.archive.columns import (
     find_columns,
     find_header,
     split_line,
+    split_lines,
 )
 from warehouse.archive.files import (
     TEXT_SUFFIXES,
@@ -214,7 +215,7 @@ def _find_layout(content: bytes, columns: Sequence[Column]) -> _Layout:
     text, encoding = decode_text(content)
     if encoding == "utf-16":
         encoding = _UTF16_MARKS[content[:2]]
-    lines = _split_lines(text)
+    lines = split_lines(text)
     place, delimiter = find_header(lines, columns)
     line_end = next((end for end in ("\r\n", "\n", "\r") if end in text), "\n")
     return _Layout(lines[place], place + 1, delimiter, encoding.removesuffix("-sig"), line_end)
@@ -258,7 +259,7 @@ def _check_read_back(content: bytes, path: str, acceptance: Acceptance, profiles
         "accepted_on": acceptance.accepted_on
     }
     text, _ = decode_text(content)
-    last_line = len(_split_lines(text)) - 1  # behind its end is an empty one
+    last_line = len(split_lines(text)) - 1  # behind its end is an empty one
     of_day = found.filter(tow_id=acceptance.tow_id, accepted_on=acceptance.accepted_on)
     if of_day.select(*meant).rows(named=True) == [meant]:
         if of_day["line"][0] != last_line:
@@ -279,7 +280,3 @@ def _check_read_back(content: bytes, path: str, acceptance: Acceptance, profiles
         path,
         values[key] or "",
     )
-
-
-def _split_lines(text: str) -> list[str]:
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")

@@ -199,6 +199,11 @@ def decode_text(data: bytes) -> tuple[str, str]:
     raise DefectiveInputError("unreadable_file", said)
 
 
+def split_lines(text: str) -> list[str]:
+    """Return the lines of a text; behind an end of line at its end comes an empty one."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
 def split_line(line: str, delimiter: str) -> list[str]:
     """Return the fields of one line, quotes taken off.
 

@@ -32,6 +32,7 @@ from warehouse.archive.columns import (
     shorten,
     split_header,
     split_line,
+    split_lines,
 )
 from warehouse.archive.faults import Fault, fault_from, say_at_line
 from warehouse.archive.files import (
@@ -193,7 +194,7 @@ def _is_text(file: ArchiveFile) -> bool:
 
 def _read_text_table(text: str, columns: Sequence[Column]) -> Table:
     """Read line by line: a quotation mark left open would swallow the rows below."""
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = split_lines(text)
     place, delimiter = find_header(lines, columns)
     header = split_line(lines[place], delimiter)
     rows: list[tuple[int, Sequence[str], bool]] = []
