@@ -5,7 +5,7 @@ import polars as pl
 
 from assets.lake import Folders, incremental, outs
 from assets.rules import read_methods
-from pipeline.register import years
+from pipeline.register import inspection, years
 from warehouse.derive import registers as derive
 
 
@@ -53,6 +53,34 @@ def registers(
         correction_steps=correction_steps,
         methods=read_methods(folders, methods),
     )
+
+
+@dg.asset
+@incremental()
+def tolerances(folders: Folders) -> pl.DataFrame:
+    """Return how far a boat may differ on a race day, by kind of measure, and who says so."""
+    settings = folders.settings
+    given = settings.model_fields_set
+    of_kind = {
+        "weight": "tolerance_weight",
+        "freeboard": "tolerance_freeboard_m",
+        "thwart": "tolerance_thwart_m",
+        "rudder": "tolerance_rudder_m",
+    }
+    rows = []
+    for kind, name in of_kind.items():
+        size = float(getattr(settings, name))
+        rows.append({"kind": kind, "size": size, "inferred": name not in given})
+    return pl.DataFrame(rows)
+
+
+@dg.asset
+@incremental()
+def inspections(
+    listed_tows: pl.DataFrame, listed_boats: pl.DataFrame, tolerances: pl.DataFrame
+) -> pl.DataFrame:
+    """Return what was last measured of each boat, and what it may be on the day of a race."""
+    return inspection.list_inspections(listed_tows, listed_boats, tolerances)
 
 
 @dg.asset

@@ -1,7 +1,8 @@
 """`beheer.toml`: when to rebuild, whom to mail and who helps, written by whoever runs it.
 
 It lies in the data folder and may be left out. No setting in it can change a number of the
-register; which differences between boats matter decides verdicts on types.
+register; which differences between boats matter decides verdicts on types, and how far a boat may
+differ on a race day the limits on its inspection sheet.
 """
 
 import datetime as dt
@@ -12,6 +13,7 @@ from typing import Final
 from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.consistency.types import DIFFERENCES_THAT_MATTER
+from pipeline.register.inspection import TOLERANCES
 from warehouse.store.methods import methods_to_apply
 from warehouse.store.settings_file import read_settings_file
 from warehouse.store.store import Store
@@ -36,6 +38,10 @@ class Settings(BaseModel):
         factor_jump: a log factor that moves more gives a warning; a ratio minus 1.
         difference_cw, difference_a, difference_b: spread between boats of a type, as a ratio, from
             which they are not equal; 3 % of Cw is a minute in a race of two hours.
+        tolerance_weight: by how much a boat may differ on a race day from its last weight, as a
+            ratio of that weight.
+        tolerance_freeboard_m, tolerance_thwart_m, tolerance_rudder_m: the same of a freeboard, the
+            distance of a thwart and a size of the rudder.
         issuer: the federation, by whom certificates are issued.
         objections_to: who receives an objection to a number: a name, an address, or both.
         objections_until: the last day on which one can be made.
@@ -61,6 +67,10 @@ class Settings(BaseModel):
     difference_cw: float = Field(default=DIFFERENCES_THAT_MATTER["cw_standard_kg_m"], gt=0, lt=1)
     difference_a: float = Field(default=DIFFERENCES_THAT_MATTER["a_kg_m"], gt=0, lt=1)
     difference_b: float = Field(default=DIFFERENCES_THAT_MATTER["b_m_s"], gt=0, lt=1)
+    tolerance_weight: float = Field(default=TOLERANCES["weight"], gt=0, lt=1)
+    tolerance_freeboard_m: float = Field(default=TOLERANCES["freeboard"], gt=0, lt=1)
+    tolerance_thwart_m: float = Field(default=TOLERANCES["thwart"], gt=0, lt=1)
+    tolerance_rudder_m: float = Field(default=TOLERANCES["rudder"], gt=0, lt=1)
     issuer: str = ""
     objections_to: str = ""
     objections_until: dt.date | None = None

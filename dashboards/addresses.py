@@ -3,6 +3,10 @@
 import datetime as dt
 import hashlib
 import re
+from typing import Final
+
+INSPECTIONS: Final = "inspection.html"
+"""The page with the inspection sheets of all boats."""
 
 
 def boat_path(fsn_no: str) -> str:
@@ -25,11 +29,26 @@ def race_path(race: str, day: dt.date) -> str:
     return _path("races", f"{race}-{day}")
 
 
-def _path(folder: str, name: str) -> str:
+def boat_sheet(fsn_no: str) -> str:
+    """Return the inspection sheet of a boat, on the page of all."""
+    return f"{INSPECTIONS}#{make_key(fsn_no)}"
+
+
+def race_sheets(race_key: str) -> str:
+    """Return the inspection sheets of the boats of a race, by its key."""
+    return f"{INSPECTIONS}?race={race_key}"
+
+
+def make_key(name: str) -> str:
+    """Return a name as it can stand in an address: itself if it can, else with a hash of it."""
     safe = re.sub(r"[^A-Za-z0-9-]+", "-", name)
     if safe != name:
         safe += "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
-    return f"{folder}/{safe}.html"
+    return safe
+
+
+def _path(folder: str, name: str) -> str:
+    return f"{folder}/{make_key(name)}.html"
 
 
 def trace_path(tow_id: str) -> str:

@@ -14,7 +14,15 @@ import polars as pl
 from markupsafe import Markup, escape
 
 from dashboards import charts, words
-from dashboards.addresses import boat_path, edition_page, race_path, trace_path, type_path
+from dashboards.addresses import (
+    boat_path,
+    boat_sheet,
+    edition_page,
+    race_path,
+    race_sheets,
+    trace_path,
+    type_path,
+)
 from dashboards.language import Language, write_duration
 from dashboards.markdown import get_title, to_html
 from dashboards.templates import get_template
@@ -40,6 +48,8 @@ _GLOBALS: Final = {
     "boat_path": boat_path,
     "type_path": type_path,
     "race_path": race_path,
+    "boat_sheet": boat_sheet,
+    "race_sheets": race_sheets,
     "edition_page": edition_page,
     "pgettext": pgettext,
     "ngettext": ngettext,

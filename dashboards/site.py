@@ -13,11 +13,18 @@ from pathlib import Path
 from typing import Any, Final, TypedDict
 
 from dashboards import charts, fonts
-from dashboards.addresses import boat_path, edition_page, race_path, trace_path, type_path
+from dashboards.addresses import (
+    INSPECTIONS,
+    boat_path,
+    edition_page,
+    race_path,
+    trace_path,
+    type_path,
+)
 from dashboards.markdown import get_title
 from dashboards.page import FOLDERS, render_page
 from dashboards.paper import make_pdf
-from dashboards.queries import boats, methods, pages, types
+from dashboards.queries import boats, inspections, methods, pages, types
 from dashboards.queries.results import Data, Results
 from pipeline.messages import LANGUAGES
 from warehouse.queries.views import Views
@@ -72,6 +79,7 @@ def list_pages(results: Results) -> Iterator[Page]:
     yield Page("changes.html", "changes", partial(pages.read_changes, results))
     yield Page("years.html", "years", partial(pages.read_years, results))
     yield Page("quality.html", "quality", partial(pages.read_quality, results))
+    yield Page(INSPECTIONS, "inspections", partial(inspections.read_inspections, results))
     yield Page("about.html", "about", dict)
     yield Page("words.html", "words", dict)
     yield Page("audit.html", "guide", partial(pages.read_guide, "audit"))

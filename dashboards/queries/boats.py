@@ -82,6 +82,7 @@ def read_boat(
         "methods": [name for name in shown if name in curves["method"].unique()],
         "boat": boat,
         "answers": crews,
+        "has_sheet": fsn_no in results.valid_boats,
         "edition": chosen_edition,
         "register": _leave_out_repeated_drafts(
             results.select_boat("register", fsn_no).filter(of_editions)

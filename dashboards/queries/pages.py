@@ -440,6 +440,7 @@ def read_race(results: Results, race: str, day: dt.date) -> Data:
     return {
         "race": race,
         "on": day,
+        "sheets": results.last_races.filter(race=race)["key"].first(),
         "rows": rows,
         "winners": [
             sum_up_class(own, chances.get((f"{race} {day}", own["crew_class"][0])))

@@ -7,6 +7,7 @@ from typing import Any, Final, TypeAlias
 
 import polars as pl
 
+from dashboards.addresses import make_key
 from pipeline.register.register import FIRST_PUBLISHED, choose_default_method
 from pipeline.tables.row import Row
 from warehouse.queries.answers import choose_current_edition, line_changes
@@ -74,6 +75,27 @@ class Results:
     def line_changes(self) -> pl.DataFrame:
         """Every pair of lines that is compared."""
         return line_changes(self.views)
+
+    @cached_property
+    def valid_lines(self) -> pl.DataFrame:
+        """The valid lines of the edition that counts, or of the best draft."""
+        return self.register.filter(edition=self.edition, status="valid")
+
+    @cached_property
+    def valid_boats(self) -> set[str]:
+        """The boats that have a valid line."""
+        return set(self.valid_lines["fsn_no"])
+
+    @cached_property
+    def last_races(self) -> pl.DataFrame:
+        """Every boat of the last race of each name: `race`, `race_date`, its `key`, `fsn_no`."""
+        races = self.views.store.read("listed_races").select("race", "race_date", "fsn_no")
+        is_last = pl.col("race_date") == pl.col("race_date").max().over("race")
+        last = races.filter(is_last).unique().sort("race", "race_date", "fsn_no")
+        key = pl.struct("race", "race_date").map_elements(
+            lambda one: make_key(f"{one['race']}-{one['race_date']}"), pl.String
+        )
+        return last.with_columns(key=key)
 
     @cached_property
     def boat_names(self) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""`herijk export`: pages of the site, certificates, and a proposal to vote on."""
+"""`herijk export`: pages of the site, certificates, inspection sheets, a proposal to vote on."""
 
 import datetime as dt
 from pathlib import Path
@@ -22,7 +22,7 @@ out_option = option("--out", type=PATH, help="PDF to write, or a folder for it."
     cls=Group, examples=("herijk export certificate FSN114", "herijk export proposal rebased")
 )
 def export() -> None:
-    """Write pages of the site, certificates or a proposal as files."""
+    """Write pages of the site, certificates, inspection sheets or a proposal as files."""
 
 
 @export.command(
@@ -74,6 +74,46 @@ def certificate(
         name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
         title = " ".join(filter(None, (tell("Certificate"), fsn_no, chosen)))
         _write(store, "certificate", made, name, title, out, views.simulated(chosen))
+
+
+@export.command(
+    examples=("herijk export inspection FSN114", "herijk export inspection --race Spiegelrace")
+)
+@argument("boat", required=False, help="A boat by number or name.")
+@data_option
+@option("--race", help="The boats that took part in a race, the last time that it was held.")
+@out_option
+@json_option
+def inspection(boat: str | None, store: "Store", race: str | None, out: Path | None) -> None:
+    """Write what was last measured of boats, to be checked on the day of a race.
+
+    Without a boat or race: all boats with a valid line.
+    """
+    from dashboards.queries.inspections import choose_race, read_sheets
+    from dashboards.queries.results import Results
+    from warehouse.queries.views import Views
+    from warehouse.store.boats import choose_boat
+    from warehouse.store.unforeseen import documents
+
+    if boat and race:
+        raise click.UsageError(tell("give a boat or a race, not both"))
+    with documents(store.root, "inspection"), Views(store) as views:
+        results = Results(views)
+        about: Data = {"race": None, "race_date": None, "key": None}
+        boats = results.valid_boats
+        fsn_no = boat and choose_boat(views.table("boats"), boat)
+        if fsn_no:
+            boats = {fsn_no}
+        if race:
+            about = choose_race(results, race)
+            boats = about.pop("boats")
+        if not boats:
+            raise MissingKnowledgeError("no boat has a valid line; name a boat or a race")
+        name = "-".join(filter(None, ("inspection", about["key"], fsn_no)))
+        title = " ".join(filter(None, (tell("Inspection on the race day"), about["race"], fsn_no)))
+        facts = views.about()
+        made = read_sheets(results, boats) | about | {"code_version": facts.get("code_version", "")}
+        _write(store, "inspection", [made], name, title, out, facts.get("simulated") == "true")
 
 
 @export.command(examples=("herijk export pages --out site-2015 --as-of 2015-06-01",))

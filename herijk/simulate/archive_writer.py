@@ -85,6 +85,7 @@ SPELLINGS: Final = (
 """In turn by season, from the first season that can be simulated."""
 
 FREEBOARD_COLUMNS: Final = ("vrijboord laagst [m]", "vrijboord boeg [m]", "vrijboord achter [m]")
+RUDDER_COLUMNS: Final = ("roer hoogte [m]", "roer breedte [m]", "roer dikte [m]")
 ALL_RUNS: Final = "1,2,3,4,5,6"
 OUT_AND_BACK_OF_THE_SECOND: Final = "1,2,3,b4,b5,b6"
 RACE_NAME: Final = "Spiegelrace"
@@ -327,11 +328,13 @@ def _boat_rows(world: World) -> list[Row]:
 
 
 def _list_rows(world: World, season: int) -> list[Row]:
-    """Return the rows of a season's list; a column that is empty for every tow is left out."""
+    """Return the rows of a season's list; an optional column of which all is empty is left out."""
     tows = [tow for tow in world.tows if tow.season == season]
-    rows = [_list_row(world, tow) for tow in tows]
-    if any(tow.free_thwart or tow.freeboards_m for tow in tows):
-        return [row | _optional_cells(tow) for row, tow in zip(rows, tows, strict=True)]
+    cells = [_optional_cells(tow) for tow in tows]
+    filled = dict.fromkeys(name for own in cells for name, cell in own.items() if cell)
+    rows = []
+    for tow, own in zip(tows, cells, strict=True):
+        rows.append(_list_row(world, tow) | {name: own.get(name, "") for name in filled})
     return rows
 
 
@@ -362,13 +365,18 @@ def _list_row(world: World, tow: Tow) -> Row:
 
 
 def _optional_cells(tow: Tow) -> Row:
+    """Return what not every list holds: the free thwart, and what an inspection at a race uses."""
     spelling = find_spelling(tow.season)
-    freeboards = zip(FREEBOARD_COLUMNS, tow.freeboards_m or (), strict=False)
-    return (
-        {"lege doft": tow.free_thwart}
-        | dict.fromkeys(FREEBOARD_COLUMNS, "")
-        | {column: spelling.number(height_m, 3) for column, height_m in freeboards}
-    )
+    cells = {"lege doft": tow.free_thwart}
+    for column, height_m in zip(FREEBOARD_COLUMNS, tow.freeboards_m or (), strict=False):
+        cells[column] = spelling.number(height_m, 3)
+    for column, size_m in zip(RUDDER_COLUMNS, tow.boat.rudder_m, strict=True):
+        cells[column] = spelling.number(size_m, 2)
+    cells["foto sloep"] = f"{tow.samples_name} sloep.jpg"
+    cells["foto roer"] = f"{tow.samples_name} roer.jpg"
+    for number, distance_m in enumerate(tow.boat.thwarts_m, start=1):
+        cells[f"doft {number} [m]"] = spelling.number(distance_m, 2)
+    return cells
 
 
 def _register_rows(world: World, year: int, curves: Curves) -> list[Row]:

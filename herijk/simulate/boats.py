@@ -70,6 +70,15 @@ HUMP_AMPLITUDE: Final = 0.03
 """Size of a marked hump; a hyperbola through 90, 100 and 110 % then misses 0.8 % (median)."""
 HUMP_PHASE_RAD: Final = 0.0
 
+ROWERS_PER_THWART: Final = 2
+FIRST_THWART: Final = 0.22
+LAST_THWART: Final = 0.74
+"""Distance of the thwarts from the bow over the length on the waterline (stated assumption)."""
+RUDDER_HEIGHT: Final = 0.8
+RUDDER_BREADTH: Final = 0.4
+RUDDER_THICKNESS_M: Final = 0.04
+"""Size of a rudder, over the height of the bow where it is no length (stated assumption)."""
+
 Shape: TypeAlias = Literal["bow wave", "hump", "delft"]
 """Where the shape of the resistance comes from: see `hull`; `delft` is a hull of its series."""
 
@@ -99,6 +108,20 @@ class Boat:
     def ht_no(self) -> str:
         """Number in the other register: seven digits, text."""
         return f"{(1_308_179 * (self.index + 1)) % 9_999_991:07d}"
+
+    @property
+    def thwarts_m(self) -> tuple[float, ...]:
+        """Distances of the thwarts from the bow."""
+        number = self.boat_type.rowers // ROWERS_PER_THWART
+        places = np.linspace(FIRST_THWART, LAST_THWART, number)
+        return tuple(round(float(place) * self.waterline_length_m, 2) for place in places)
+
+    @property
+    def rudder_m(self) -> tuple[float, float, float]:
+        """Height, breadth and thickness of the rudder."""
+        height = round(RUDDER_HEIGHT * self.bow_height_m, 2)
+        breadth = round(RUDDER_BREADTH * self.bow_height_m, 2)
+        return height, breadth, RUDDER_THICKNESS_M
 
     def target_power_w(self, crew_class: str) -> float:
         """Return the power per rower [W] at which this boat is towed."""

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from herijk.simulate.boats import (
+    ROWERS_PER_THWART,
     Boat,
     Shape,
     crew_kg,
@@ -36,8 +37,6 @@ HIGHEST_WEIGHT_GAIN_KG: Final = 8.0
 """A boat weighed after the tow is a little wetter (stated assumption)."""
 REPLACED_AT: Final = (0.3, 0.7)
 """Part of a season after which its log is replaced."""
-ROWERS_LEFT_OUT: Final = 2
-"""Rowers on a thwart, who are missed when it is left free."""
 FREE_THWART: Final = "3"
 BLOCK_COEFFICIENT: Final = 0.65
 """Waterplane over length times beam: a heavier boat lies deeper (stated assumption)."""
@@ -60,7 +59,7 @@ class WorldSettings:
         spread: of boats of a type, relative to the usual; 0 makes them identical.
         linking_boats: of a season, how many of its boats are also towed in another; else all.
         tows_a_day, days_apart: how a season's tows are spread.
-        freeboards_from: first season whose list gives freeboards; None for never.
+        freeboards_from: first season whose list gives freeboards (Sleepproef, R. Pot 2017).
     """
 
     seasons: tuple[int, ...] = tuple(range(FIRST_SEASON, 2019))
@@ -74,7 +73,7 @@ class WorldSettings:
     linking_boats: Mapping[int, int] = field(default_factory=dict)
     tows_a_day: int = 8
     days_apart: int = 1
-    freeboards_from: int | None = None
+    freeboards_from: int = 2017
 
     def __post_init__(self) -> None:
         """Check what a user typed."""
@@ -354,7 +353,7 @@ def _log_change(settings: WorldSettings, season: int, day: int) -> float:
 
 
 def _rowers(boat: Boat, defects: Defects, rng: np.random.Generator) -> int:
-    left_out = ROWERS_LEFT_OUT if rng.random() < defects.empty_thwart_share else 0
+    left_out = ROWERS_PER_THWART if rng.random() < defects.empty_thwart_share else 0
     return boat.boat_type.rowers - left_out
 
 
@@ -367,7 +366,7 @@ def _freeboards_m(
     settings: WorldSettings, season: int, boat: Boat, weight_kg: float
 ) -> tuple[float, float, float] | None:
     """Return freeboards of the empty boat; a heavier one lies deeper."""
-    if settings.freeboards_from is None or season < settings.freeboards_from:
+    if season < settings.freeboards_from:
         return None
     waterplane_m2 = BLOCK_COEFFICIENT * boat.waterline_length_m * boat.beam_m
     deeper_m = (weight_kg - boat.boat_type.weight_kg) / (1000.0 * waterplane_m2)

@@ -201,9 +201,7 @@ WORLDS: Final[Mapping[str, NamedWorld]] = {
         {EVER: {"second_file_share": 0.25, "second_file_log": 0.02}},
     ),
     "lists": NamedWorld(
-        "Freeboards from 2017 on, and a tenth of the tows with a thwart left free.",
-        {EVER: {"empty_thwart_share": 0.10}},
-        {"freeboards_from": 2017},
+        "A tenth of the tows with a thwart left free.", {EVER: {"empty_thwart_share": 0.10}}
     ),
     "temperatures": NamedWorld(
         "Until 2013 temperatures are not written down, while the water warms from 4 to 12 C.",

@@ -57,6 +57,10 @@ HIGHEST_POWER_W: Final = {"H": 90.0, "D": 55.0}
 """Ends of the power per rower at a realistic tow speed."""
 LIGHTEST_ROWER_KG: Final = {"H": 81.0, "D": 64.0}
 HEAVIEST_ROWER_KG: Final = {"H": 114.0, "D": 90.0}
+MAX_WEIGHT_CHANGE: Final = 0.02
+MAX_FREEBOARD_CHANGE_M: Final = 0.03
+"""Change of a boat since its previous tow, or on a race day, that is allowed: of weight as a ratio
+(inferred)."""
 WAYS_LIMIT: Final = 0.05
 """Least difference of Cw out from Cw back that is marked; more where all tows of an archive differ
 (`assess`)."""
@@ -157,12 +161,23 @@ CHECKS: Final = (
     Check("heavier_after", "weight_after_kg / weight_kg - 1", say("heavier after"), None, 0.02),
     Check("water_differs", "water_off_c", say("water unlike its day's"), None, 3.0, unit="C"),
     Check("boat_list_differs", "off_boat_list", say("differs from the boat list"), None, 0.05),
-    Check("weight_changed", "weight_kg_change", say("weight changed"), -0.02, 0.02),
+    Check(
+        "weight_changed",
+        "weight_kg_change",
+        say("weight changed"),
+        -MAX_WEIGHT_CHANGE,
+        MAX_WEIGHT_CHANGE,
+    ),
     Check("length_changed", "waterline_length_m_change", say("length changed"), -0.01, 0.01),
     Check("beam_changed", "beam_m_change", say("beam changed"), -0.02, 0.02),
     Check("bow_height_changed", "bow_height_m_change", say("bow height changed"), -0.05, 0.05),
     Check(
-        "freeboard_changed", "freeboard_change_m", say("freeboard changed"), None, 0.03, unit="m"
+        "freeboard_changed",
+        "freeboard_change_m",
+        say("freeboard changed"),
+        None,
+        MAX_FREEBOARD_CHANGE_M,
+        unit="m",
     ),
     # The curve against others
     Check("unlike_other_tows", "over_best", say("unlike its other tows"), -0.035, 0.035),

@@ -87,6 +87,30 @@ class Acceptances(PerTow):
     line = column.count("line in it", least=2)
 
 
+class Inspections(dy.Schema):
+    """What was last measured of each boat, and what it may be on the day of a race."""
+
+    fsn_no = column.fsn_no(primary_key=True)
+    measure = column.text(
+        "what is measured: a column of the tow list, as weight_kg or thwart_1_m", primary_key=True
+    )
+    position = column.count("order on the sheet", least=1)
+    unit = column.text("unit of its numbers; empty text of a photograph")
+    value = column.optional("as last measured; empty where it never was", unit="as in unit")
+    photo = column.text("name of the last photograph", nullable=True)
+    source = column.text(
+        "list that it comes from: tow_list or boat_list; empty where it was never measured",
+        nullable=True,
+        regex="^(tow_list|boat_list)$",
+    )
+    measured_on = column.day("day of the tow; the boat list gives none", nullable=True)
+    tow_id = column.tow_id(nullable=True)
+    tolerance = column.optional("how much it may differ", unit="as in unit")
+    lowest = column.optional("lowest that is allowed, in whole kg or mm", unit="as in unit")
+    highest = column.optional("highest that is allowed, in whole kg or mm", unit="as in unit")
+    inferred = column.flag("the tolerance is inferred: nobody set it in beheer.toml", nullable=True)
+
+
 class TraceSeconds(PerRun):
     """Means over every second of every run: what the instruments said."""
 

@@ -12,18 +12,22 @@ from typing import Final, NamedTuple
 
 from pipeline.messages import Sentence, pgettext, say
 from pipeline.tables.causes import STEPS
+from pipeline.tables.keys import MAX_THWARTS
 
 _TITLES_LIKE_NAMES: Final = (
     say("A [kg/m]"), say("Altered"), say("As of"), say("B [m/s]"), say("Beam [m]"),
     say("Bow height [m]"), say("Cause"), say("Causes"), say("Change"), say("Check"), say("Crew"),
     say("Decision"), say("Direction"), say("Disagrees"), say("E_n"), say("Edition"),
     say("Empty thwart"), say("Equal"), say("Era"), say("Expected"), say("Factor"),
-    say("First seen"), say("Flag"), say("Follows"), say("FSN no"), say("GPS [m/s]"), say("HT no"),
-    say("Hull speed [m/s]"), say("In words"), say("Interval"), say("Kind"), say("Last tow"),
+    say("First seen"), say("Flag"), say("Follows"), say("Freeboard bow [m]"),
+    say("Freeboard lowest [m]"), say("Freeboard stern [m]"), say("FSN no"), say("GPS [m/s]"),
+    say("HT no"), say("Hull speed [m/s]"), say("In words"), say("Interval"), say("Kind"),
+    say("Last tow"),
     say("Limit"), say("Line"), say("Lines"), say("Listed"), say("Log"), say("Made again"),
     say("Mean"), say("Median"), say("Method"), say("Method hash"), say("n"), say("Name"),
     say("New winner"), say("Number"), say("Observed"), say("Old winner"), say("Outcome"),
     say("Part"), say("Published on"), say("Quantity"), say("Race"), say("Ratio"), say("Rows"),
+    say("Rudder breadth [m]"), say("Rudder height [m]"), say("Rudder thickness [m]"),
     say("Run"), say("Runs set aside"), say("Runs used"), say("Seal"), say("Season"),
     say("Season before"), say("Second"), say("Severity"), say("Shared B [m/s]"), say("Size"),
     say("Slope"), say("Source"), say("Speed"), say("Speed factor"), say("Standard speed [m/s]"),
@@ -40,6 +44,7 @@ TITLES: Final[dict[str, Sentence]] = {
     **{f"{step}{STEP_CHANGE}": name for step, name in STEPS.items()},
     **{f"{step}{STEP_FACTOR}": name for step, name in STEPS.items()},
     **{re.sub(r"\W+", "_", text.lower().rstrip("]")): text for text in _TITLES_LIKE_NAMES},
+    **{f"thwart_{n}_m": say("Thwart {} [m]", n) for n in range(1, MAX_THWARTS + 1)},
     "a_lo_kg_m": say("A lowest [kg/m]"),
     "a_hi_kg_m": say("A highest [kg/m]"),
     "b_hull_ratio": say("B / hull speed"),

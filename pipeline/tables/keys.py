@@ -29,3 +29,6 @@ SEASON_LEVEL: Final = "season_level"
 
 WOULD_NOT_SHOW: Final = "would not show"
 """Among its verdicts: a fault of the usual size would not be found."""
+
+MAX_THWARTS: Final = 8
+"""Number of thwarts of which a tow list can give the distance (inferred: 16 rowers)."""

@@ -36,6 +36,19 @@ class ListedBoats(Boats):
 class ListedTows(TowFacts):
     """Tows of the lists that could be read, whatever their samples are."""
 
+    thwart_1_m = column.thwart("distance of thwart 1 from the bow")
+    thwart_2_m = column.thwart("the same of thwart 2")
+    thwart_3_m = column.thwart("the same of thwart 3")
+    thwart_4_m = column.thwart("the same of thwart 4")
+    thwart_5_m = column.thwart("the same of thwart 5")
+    thwart_6_m = column.thwart("the same of thwart 6")
+    thwart_7_m = column.thwart("the same of thwart 7")
+    thwart_8_m = column.thwart("the same of thwart 8")
+    rudder_height_m = column.rudder("height of the rudder")
+    rudder_breadth_m = column.rudder("its breadth, along the boat")
+    rudder_thickness_m = column.rudder("its thickness")
+    photo_boat = column.text("name of the photograph of the boat", nullable=True)
+    photo_rudder = column.text("the same of the rudder", nullable=True)
     samples_runs = column.text("run of each samples file, where each has its own", nullable=True)
     second_runs = column.text("the same of the second files", nullable=True)
     run_windows = column.text("begin and end of each run in a recording [s]", nullable=True)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from pipeline.tables.declare import dy
+from pipeline.tables.keys import MAX_THWARTS
 from pipeline.tables.lake import (
     ListedAcceptances,
     ListedBoats,
@@ -135,14 +136,32 @@ _DAY_OF_TOW: Final = (
     _length("freeboard_lowest_m", "vrijboord laagst"),
     _length("freeboard_bow_m", "vrijboord boeg"),
     _length("freeboard_stern_m", "vrijboord achter"),
-    Column(REMARK, "opmerking", required=False),
 )
+_THWARTS: Final = tuple(_length(f"thwart_{n}_m", f"doft {n}") for n in range(1, MAX_THWARTS + 1))
+_RUDDER: Final = (
+    _length("rudder_height_m", "roer hoogte"),
+    _length("rudder_breadth_m", "roer breedte"),
+    _length("rudder_thickness_m", "roer dikte"),
+)
+_PHOTOS: Final = (
+    Column("photo_boat", "foto sloep", required=False),
+    Column("photo_rudder", "foto roer", required=False),
+)
+_FOR_INSPECTION: Final = _THWARTS + _RUDDER + _PHOTOS
+"""What an inspection at a race uses and no computation (Sleepproef, R. Pot 2017, "Opmetingen en
+keuring")."""
 TOWS: Final = ListKind(
     folder="sleeplijsten",
     pattern="sleeplijst_([0-9]{4})",
     reason_code="bad_list_row",
     table=ListedTows,
-    columns=_TOW + _CREW + (_SPEED,) + _SIZES + _DAY_OF_TOW,
+    columns=_TOW
+    + _CREW
+    + (_SPEED,)
+    + _SIZES
+    + _DAY_OF_TOW
+    + _FOR_INSPECTION
+    + (Column(REMARK, "opmerking", required=False),),
     about="tow_id",
     spare=frozenset(
         {
@@ -150,7 +169,8 @@ TOWS: Final = ListKind(
             "weight_after_kg", "crew_weight_kg", "water_temperature_c",
             "freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m",
         }
-    ),
+    )
+    | {column.key for column in _THWARTS + _RUDDER},
 )  # fmt: skip
 WINDOWS: Final = ListKind(
     folder="sleeplijsten",

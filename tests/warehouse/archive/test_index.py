@@ -329,3 +329,24 @@ def test_a_list_on_which_herijk_fails_costs_that_list(
     assert (of_list.path, of_list.reason_code) == (path, "unforeseen")
     assert "planted" in of_list.trace
     assert [f.tow_id for f in faults if f is not of_list and f.tow_id] == lost
+
+
+def test_what_an_inspection_uses_is_read_in_its_unit_and_a_bad_cell_costs_no_tow(
+    archive: Archive,
+) -> None:
+    header = "doft 1 [cm];doft 2;roer dikte [mm];foto sloep;Foto Roer"
+    rows = ("180;3,21;40;a.jpg;b.jpg", "x;99;;;", ";;;;")
+    lines = (archive.root / TOWS).read_text("utf-8").split("\n")
+    for place, cells in enumerate((header, *rows)):
+        lines[place] += f";{cells}"
+    (archive.root / TOWS).write_text("\n".join(lines), "utf-8")
+    scan = archive.scan()
+    columns = ("thwart_1_m", "thwart_2_m", "rudder_thickness_m", "photo_boat", "photo_rudder")
+    found = scan.index.tows.sort("tow_id").select(columns).rows()
+    assert found == [(1.8, 3.21, 0.04, "a.jpg", "b.jpg"), (None,) * 5, (None,) * 5]
+    faults = [(fault.tow_id, fault.lost, fault.message) for fault in scan.faults]
+    word, size = faults
+    assert word[:2] == size[:2] == ("2014-002", "cell")
+    assert "'doft 1 [cm]' is 'x', which is not an ordinary number" in word[2]
+    assert "'doft 2' is 99" in size[2]
+    assert "counts as empty" in size[2]

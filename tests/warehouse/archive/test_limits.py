@@ -25,7 +25,9 @@ sleep_id;datum;fsn_nr;meetfile;roeiers;klasse;roeisnelheid [m/s];meetfrequentie 
 lengte [m];breedte [m];hoogte [m];gewicht [kg];gewicht na [kg];bemanning [kg];watertemperatuur [C]
 8;2;1;600;600;700;8
 vrijboord laagst [m];vrijboord boeg [m];vrijboord achter [m]
-0.4;0.5;0.5""",
+0.4;0.5;0.5
+doft 1 [m];doft 8 [m];roer hoogte [m];roer breedte [m];roer dikte [m]
+1.8;7;0.7;0.3;0.04""",
     list_kinds.WINDOWS: """
 sleep_id;run;van [s];tot [s];reden
 2014-001;1;5;45;zwaan""",
