@@ -55,17 +55,16 @@ def list_inspections(
     Returns:
         Rows of `inspections`.
     """
-    boat = ["fsn_no", "measure"]
+    key = ["fsn_no", "measure"]
     listed = boats.select("fsn_no", measure=pl.lit(WEIGHT), listed=WEIGHT).unique("fsn_no")
     rows = (
-        boats.select("fsn_no")
-        .unique()
-        .join(_describe_measures(), how="cross")
-        .join(_find_last_measured(tows), on=boat, how="left")
-        .join(listed, on=boat, how="left")
-        .join(_count_thwarts(tows, boats), on="fsn_no", how="left")
-        .join(tolerances, on="kind", how="left")
+        boats.select("fsn_no").unique(maintain_order=True).join(_describe_measures(), how="cross")
     )
+    rows = rows.join(_find_last_measured(tows), on=key, how="left", maintain_order="left")
+    rows = rows.join(listed, on=key, how="left", maintain_order="left")
+    n_thwarts = _count_thwarts(tows, boats)
+    rows = rows.join(n_thwarts, on="fsn_no", how="left", maintain_order="left")
+    rows = rows.join(tolerances, on="kind", how="left", maintain_order="left")
     is_measured = pl.col("tow_id").is_not_null()
     is_listed = ~is_measured & pl.col("listed").is_not_null()
     source = pl.when(is_measured).then(pl.lit("tow_list")).when(is_listed).then(pl.lit("boat_list"))
@@ -119,7 +118,7 @@ def _find_last_measured(tows: pl.DataFrame) -> pl.DataFrame:
 def _count_thwarts(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     """Return `n_thwarts` of each boat, by the largest crew that any list gives it."""
     crews = pl.concat([tows.select("fsn_no", "rowers"), boats.select("fsn_no", "rowers")])
-    most = crews.group_by("fsn_no").agg(pl.col("rowers").max())
+    most = crews.group_by("fsn_no", maintain_order=True).agg(pl.col("rowers").max())
     return most.select("fsn_no", n_thwarts=(pl.col("rowers") / ROWERS_PER_THWART).ceil())
 
 

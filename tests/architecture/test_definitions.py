@@ -15,6 +15,7 @@ BARE = {
         "published_lineage",
         "differences_that_matter",
         "objection_terms",
+        "tolerances",
     ),
     *("warehouse_database", "site", "check_results", "report"),
 }

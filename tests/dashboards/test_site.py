@@ -25,6 +25,9 @@ from warehouse.queries.answers import answers, choose_newest_edition
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
 
+FILE_OF_LINK = r"([^\"#:?]+)(?:[?#][^\"]*)?"
+"""The file that a link of the site names; what is shown of it may follow."""
+
 
 def pages(site):
     return sorted(site.rglob("*.html"))
@@ -69,7 +72,7 @@ def test_every_page_can_be_reached_from_the_first(site):
         if page in reached or page.suffix != ".html" or not page.is_relative_to(site.resolve()):
             continue
         reached.add(page)
-        links = re.findall(r'href="([^"#:]+)"', page.read_text("utf-8"))
+        links = re.findall(rf'href="{FILE_OF_LINK}"', page.read_text("utf-8"))
         ahead += [page.parent / link for link in links]
     lost = [str(file) for file in pages(site) if file.resolve() not in reached]
     assert lost == [], "link each from a page of its subject, or from the menu in page.html.j2"
@@ -105,7 +108,7 @@ def test_links_lead_to_files(site):
     broken = [
         f"{file.name}: {link}"
         for file in pages(site)
-        for link in re.findall(r'(?:href|src)="([^"#:]+)"', file.read_text("utf-8"))
+        for link in re.findall(rf'(?:href|src)="{FILE_OF_LINK}"', file.read_text("utf-8"))
         if not (file.parent / link).exists()
     ]
     assert broken == []
