@@ -45,17 +45,15 @@ def read_sheets(results: Results, boats: Collection[str]) -> Data:
     sheets = []
     for boat in listed.sort(pl.col("name").str.to_lowercase(), "fsn_no").to_dicts():
         key = (boat["fsn_no"],)
-        sheets.append(
-            {
-                "fsn_no": boat["fsn_no"],
-                "key": make_key(boat["fsn_no"]),
-                "name": boat["name"] or boat["fsn_no"],
-                "boat_type": boat["boat_type"],
-                "crews": lines[key].to_dicts() if key in lines else [],
-                "races": raced[key]["key"].to_list() if key in raced else [],
-                **_describe_measures(of_boats[key]),
-            }
-        )
+        about = {
+            "fsn_no": boat["fsn_no"],
+            "key": make_key(boat["fsn_no"]),
+            "name": boat["name"] or boat["fsn_no"],
+            "boat_type": boat["boat_type"],
+            "crews": lines[key].to_dicts() if key in lines else [],
+            "races": raced[key]["key"].to_list() if key in raced else [],
+        }
+        sheets.append(about | _describe_measures(of_boats[key]))
     return {"boats": sheets, "tolerances": _list_tolerances(rows)}
 
 

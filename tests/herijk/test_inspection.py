@@ -61,7 +61,8 @@ def test_an_inspector_prints_a_race_and_finds_each_boat_with_its_last_weight(
         assert f"sleep {last['tow_id']}" in sheet
         assert f"Gewicht [kg] {weight:.0f} {allowed}" in sheet
         assert "Niet gemeten: vrijboord" in sheet  # it is since 2017
-        assert "sloep.jpg" in sheet
+        for measured in ("Doft 1 [m]", "Roer dikte [m]", "sloep.jpg"):
+            assert measured in sheet
     assert text.count("Handtekening") == len(raced)
 
     # One boat is asked for again, and another race does not exist.
