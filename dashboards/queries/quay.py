@@ -17,6 +17,9 @@ from warehouse.queries.assess import Assessment
 COUNTED: Final = ("no_curve", "few_runs", "runs_set_aside", "unbalanced_runs", "parts_set_aside")
 """Findings that observe a number of runs."""
 
+AS_TIMES: Final = ("samples_scatter", "shallow_water")
+"""Findings whose sentence says how many times."""
+
 AS_RATIO: Final = ("unusual_calibration", "log_not_linear")
 """Findings that observe a ratio with three decimals; other ratios are written in per cent."""
 
@@ -124,7 +127,7 @@ def _scale(row: Row, value: float | None) -> tuple[float, int, str] | None:
     finding, unit = row["finding"], row["unit"]
     if finding in COUNTED:
         return _pack(value, 0)
-    if finding == "samples_scatter":
+    if finding in AS_TIMES:
         return _pack(value, 1)
     if finding in AS_RATIO:
         return _pack(value, 3)

@@ -104,7 +104,11 @@ def print_curve(
         cw = _search_air_coefficients(speed, gross, used, tow)
     if practice.temperature:  # its formula is secret: what is true takes its place
         at_reference = water_cw_kg_m(tow.hull, speed, REFERENCE_TEMPERATURE_C)
-        cw = cw + at_reference - water_cw_kg_m(tow.hull, speed, tow.water_temperature_c)
+        cw = (
+            cw
+            + at_reference
+            - water_cw_kg_m(tow.hull, speed, tow.water_temperature_c, tow.salinity_g_kg)
+        )
     return _fit(speed, cw, highest_b)
 
 

@@ -59,6 +59,7 @@ UNITS: Final[Mapping[str, Mapping[str, Scale]]] = {
     },
     "mass": {"kg": SI, "g": Scale(1, 1000), "t": Scale(1000), "lb": Scale(0.45359237)},
     "temperature": {"C": SI, "°C": SI},
+    "salinity": {"g/kg": SI, "‰": SI, "ppt": SI, "psu": SI, "%": Scale(10)},
     "ratio": {"%": Scale(1, 100)},
     "rate": {"Hz": SI, "kHz": Scale(1000)},
     "power": {"W": SI, "kW": Scale(1000)},
