@@ -365,7 +365,7 @@ def _list_row(world: World, tow: Tow) -> Row:
 
 
 def _optional_cells(tow: Tow) -> Row:
-    """Return what not every list holds: the free thwart, and what an inspection at a race uses."""
+    """Return what not every list holds: the free thwart, salt, and what an inspection uses."""
     spelling = find_spelling(tow.season)
     cells = {"lege doft": tow.free_thwart}
     for column, height_m in zip(FREEBOARD_COLUMNS, tow.freeboards_m or (), strict=False):
@@ -376,6 +376,8 @@ def _optional_cells(tow: Tow) -> Row:
     cells["foto roer"] = f"{tow.samples_name} roer.jpg"
     for number, distance_m in enumerate(tow.boat.thwarts_m, start=1):
         cells[f"doft {number} [m]"] = spelling.number(distance_m, 2)
+    if tow.salinity_g_kg:
+        cells["zoutgehalte [g/kg]"] = spelling.number(tow.salinity_g_kg, 1)
     return cells
 
 
