@@ -10,6 +10,7 @@ from typing import Final
 
 import polars as pl
 
+from dashboards.addresses import race_path
 from dashboards.queries.boats import find_changed_options
 from dashboards.queries.methods import describe_option
 from dashboards.queries.pages import sum_up_gains
@@ -53,7 +54,7 @@ def read_parts(results: Results) -> Data:
         "scale_s": math.ceil(max([1.0, *gains_s])),
         "races": races,
         "podium": PODIUM,
-        "chosen": {"race": races[0]["key"] if races else ""},
+        "chosen": {"race": races[0]["path"] if races else ""},
     }
 
 
@@ -91,7 +92,7 @@ def _read_races(results: Results, combinations: Sequence[str]) -> list[Row]:
                 rows.append(_name_crew(results, crew) | ranks)
             rows.sort(key=lambda row: (row["new"][-1] or math.inf, row["fsn_no"]))
             classes.append({"crew_class": crew_class, "rows": rows})
-        races.append({"race": race, "on": day, "key": f"{race} {day}", "classes": classes})
+        races.append({"race": race, "on": day, "path": race_path(race, day), "classes": classes})
     return races
 
 

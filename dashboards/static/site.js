@@ -145,6 +145,7 @@
     const asked = new URLSearchParams(location.search);
     for (const one of selects) if ([...one.options].some((option) => option.value === asked.get(one.name))) one.value = asked.get(one.name);
     show();
+    if (location.search) keep();
   }
 
   start();

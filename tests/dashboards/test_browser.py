@@ -134,6 +134,10 @@ def test_a_page_is_in_one_language_and_leads_to_the_other(visit):
     assert "Search" in page.locator(".tools").first.inner_text()
     assert "," not in cw_cells(page).first.inner_text()
     assert page.locator("select[name=edition]").input_value() == DRAFT
+    page.reload()
+    page.get_by_role("link", name="Nederlands").click()
+    page.wait_for_url("**/register.html*")
+    assert page.locator("select[name=edition]").input_value() == DRAFT
 
 
 @pytest.mark.parametrize("misspell", [str, lambda name: name[:4] + name[5:]])
