@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from dashboards.document import Document
-from dashboards.language import Language
-from pipeline.messages import LANGUAGES
+from dashboards.language import Language, get_other_language
 
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -31,7 +30,7 @@ def render_page(
         site: the way to the site, of a page that lies outside it.
         other_page: the same page in the other language, of a page that lies outside the site.
     """
-    other = next(tag for tag in LANGUAGES if tag != language)
+    other = get_other_language(language)
     root = site + FOLDERS[language] if site else "../" * path.count("/")
     site_root = site or root + "../" * bool(FOLDERS[language])
     document = Document(Language(language), root, data.get("chosen"))
