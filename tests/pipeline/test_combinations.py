@@ -16,6 +16,7 @@ from pipeline.studies.combinations import (
     find_switches,
     list_combinations,
     name_combination,
+    uses_new_instruments,
 )
 from tests.worlds import find_tows_without_gps, measure
 
@@ -100,6 +101,11 @@ def test_an_estimated_log_belongs_to_the_switch_of_the_instruments(world, combin
     assert set(lacking) == {
         name_combination(on) for on in list_combinations(SWITCHES) if "instruments" not in on
     }
+
+
+def test_estimates_of_instruments_that_no_switch_applies_belong_to_all_that_is_on():
+    assert [uses_new_instruments(on, ["fit"]) for on in ([], ["fit"])] == [False, True]
+    assert not uses_new_instruments(["fit"], ["instruments", "fit"])
 
 
 def test_a_group_that_both_methods_have_alike_is_no_switch(world):
