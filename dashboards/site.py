@@ -24,7 +24,7 @@ from dashboards.addresses import (
 from dashboards.markdown import get_title
 from dashboards.page import FOLDERS, render_page
 from dashboards.paper import make_pdf
-from dashboards.queries import boats, inspections, methods, pages, types
+from dashboards.queries import boats, inspections, methods, pages, types, votes
 from dashboards.queries.results import Data, Results
 from pipeline.messages import LANGUAGES
 from warehouse.queries.views import Views
@@ -77,6 +77,8 @@ def list_pages(results: Results) -> Iterator[Page]:
     yield Page("types.html", "types", partial(types.read_types, results))
     yield Page("seasons.html", "seasons", partial(pages.read_seasons, results))
     yield Page("changes.html", "changes", partial(pages.read_changes, results))
+    if results.vote_switches:
+        yield Page(votes.PAGE, "proposal_parts", partial(votes.read_parts, results))
     yield Page("years.html", "years", partial(pages.read_years, results))
     yield Page("quality.html", "quality", partial(pages.read_quality, results))
     yield Page(INSPECTIONS, "inspections", partial(inspections.read_inspections, results))
