@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from contextvars import copy_context
 
 import pytest
 
@@ -42,7 +43,7 @@ def herijk(monkeypatch, capsys):
         monkeypatch.setattr(sys.modules["__main__"], "__package__", "")  # not `python -m pytest`
         capsys.readouterr()
         with in_one_process(), records_in_memory(), pytest.raises(SystemExit) as stopped:
-            main()
+            copy_context().run(main)  # it sets the language
         printed = capsys.readouterr()
         assert "Traceback" not in printed.err
         if "--json" in arguments and printed.out:
