@@ -9,7 +9,7 @@ import polars as pl
 
 from dashboards.addresses import make_key
 from pipeline.register.register import choose_default_method, list_shown_methods
-from pipeline.studies.combinations import find_switches
+from pipeline.studies.switches import find_switches
 from pipeline.tables.row import Row
 from warehouse.queries.answers import choose_current_edition, line_changes
 from warehouse.queries.views import Views

@@ -18,7 +18,7 @@ from dashboards.queries.results import Data, Results
 from pipeline.method.options import STEP_GROUPS
 from pipeline.register.register import LINE, name_draft
 from pipeline.register.replay import PODIUM
-from pipeline.studies.combinations import list_combinations, name_combination
+from pipeline.studies.switches import list_combinations, name_combination
 from pipeline.tables.row import Row
 
 PAGE: Final = "parts.html"

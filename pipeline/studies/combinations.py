@@ -18,9 +18,7 @@ from pipeline.recompute.recompute import evaluate
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register.register import choose_default_method, list_shown_methods
 from pipeline.studies.ladder import exchange_steps
-
-NOTHING_ON: Final = "none"
-"""Name of the combination that is the first method."""
+from pipeline.studies.switches import find_switches, list_combinations, name_combination
 
 INSTRUMENTS: Final = "instruments"
 """The group of steps that applies what was estimated of logs and load cells."""
@@ -72,34 +70,14 @@ def compute_combinations(
 
 def list_switches(old: Plan, new: Plan) -> list[str]:
     """Return the groups of steps that some tow has otherwise under the new plan."""
-    pairs = set(zip(old.which.tolist(), new.which.tolist(), strict=True))
-    return [
-        group
-        for group, steps in STEP_GROUPS.items()
-        if any(
-            getattr(old.steps[before], step) != getattr(new.steps[after], step)
-            for before, after in pairs
-            for step in steps
-        )
-    ]
-
-
-def list_combinations(switches: Sequence[str]) -> list[list[str]]:
-    """Return what is on in every combination; switch i is where the place has bit i set."""
-    return [
-        [switch for bit, switch in enumerate(switches) if place >> bit & 1]
-        for place in range(2 ** len(switches))
-    ]
-
-
-def name_combination(on: Sequence[str]) -> str:
-    """Return the name of a combination: what is on, joined by `+`, or `NOTHING_ON`."""
-    return "+".join(on) or NOTHING_ON
-
-
-def find_switches(combinations: Collection[str]) -> list[str]:
-    """Return the switches that the names of combinations are made of, in the order of the steps."""
-    return [group for group in STEP_GROUPS if group in combinations]
+    changed = set()
+    for before, after in set(zip(old.which.tolist(), new.which.tolist(), strict=True)):
+        for group, steps in STEP_GROUPS.items():
+            of_group = set(steps)
+            was = old.steps[before].model_dump(include=of_group)
+            if was != new.steps[after].model_dump(include=of_group):
+                changed.add(group)
+    return find_switches(changed)
 
 
 def uses_new_instruments(on: Collection[str], switches: Collection[str]) -> bool:

@@ -10,13 +10,15 @@ from pipeline.method.options import STEP_GROUPS, STEP_ORDER
 from pipeline.method.reading import parse_method, read_shipped_method
 from pipeline.recompute.recompute import recompute
 from pipeline.studies.combinations import (
-    NOTHING_ON,
     choose_ends,
     compute_combinations,
+    uses_new_instruments,
+)
+from pipeline.studies.switches import (
+    NOTHING_ON,
     find_switches,
     list_combinations,
     name_combination,
-    uses_new_instruments,
 )
 from tests.worlds import find_tows_without_gps, measure
 

@@ -13,13 +13,8 @@ from pipeline.register.register import (
     list_lines_on_days,
 )
 from pipeline.register.replay import RaceRules, race_changes, replay
-from pipeline.studies.combinations import (
-    choose_ends,
-    find_switches,
-    list_combinations,
-    name_combination,
-    uses_new_instruments,
-)
+from pipeline.studies.combinations import choose_ends, uses_new_instruments
+from pipeline.studies.switches import find_switches, list_combinations, name_combination
 from pipeline.tables.studies import VoteLines, VoteRaces
 
 INTERVALS = ("cw_lo_kg_m", "cw_hi_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m")
