@@ -27,6 +27,7 @@ def registers(
     log_factors: pl.DataFrame,
     decisions: pl.DataFrame,
     correction_steps: pl.DataFrame,
+    crew_classes: pl.DataFrame,
     published_register: pl.DataFrame,
     published_register_history: pl.DataFrame,
     published_register_changes: pl.DataFrame,
@@ -51,6 +52,7 @@ def registers(
         decisions=decisions,
         published=published,
         correction_steps=correction_steps,
+        crew_classes=crew_classes,
         methods=read_methods(folders, methods),
     )
 
@@ -58,10 +60,13 @@ def registers(
 @dg.asset
 @incremental(may_fail=True)
 def race_changes(
-    register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
+    register_changes: pl.DataFrame,
+    register_history: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    crew_classes: pl.DataFrame,
 ) -> pl.DataFrame:
     """All races in the archive under both editions of every pair that is compared."""
-    return derive.race_changes(register_changes, register_history, listed_races)
+    return derive.race_changes(register_changes, register_history, listed_races, crew_classes)
 
 
 @dg.multi_asset(outs=outs("register_years", "year_winners"), can_subset=True)
@@ -73,11 +78,12 @@ def registers_of_years(
     correction_steps: pl.DataFrame,
     tows: pl.DataFrame,
     listed_races: pl.DataFrame,
+    crew_classes: pl.DataFrame,
     ensemble: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
     """Return the register of every past year, as published and by each method, and its races."""
     applied = read_methods(folders, methods)
     seasons = tows["season"].unique().sort().to_list()
     lines = years.register_years(register_history, correction_steps, applied, seasons)
-    winners = years.year_winners(register_history, listed_races, ensemble, applied)
+    winners = years.year_winners(register_history, listed_races, ensemble, applied, crew_classes)
     return {"register_years": lines, "year_winners": winners}

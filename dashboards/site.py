@@ -15,11 +15,10 @@ from typing import Any, Final, TypedDict
 from dashboards import charts, fonts
 from dashboards.addresses import boat_path, edition_page, race_path, trace_path, type_path
 from dashboards.markdown import get_title
-from dashboards.page import FOLDERS, render_page
+from dashboards.page import list_folders, render_page
 from dashboards.paper import make_pdf
 from dashboards.queries import boats, methods, pages, types
 from dashboards.queries.results import Data, Results
-from pipeline.messages import LANGUAGES
 from warehouse.queries.views import Views
 from warehouse.store.editions import NOTICE, NOTICE_EN, get_edition_path, list_edition_names
 from warehouse.store.files import write_folder_beside
@@ -74,7 +73,8 @@ def list_pages(results: Results) -> Iterator[Page]:
     yield Page("quality.html", "quality", partial(pages.read_quality, results))
     yield Page("about.html", "about", dict)
     yield Page("words.html", "words", dict)
-    yield Page("audit.html", "guide", partial(pages.read_guide, "audit"))
+    if "crew_names" not in results.views.about():  # the guide tells of the Dutch federation
+        yield Page("audit.html", "guide", partial(pages.read_guide, "audit"))
     for name in results.methods:
         path = methods.get_method_page(results, name)
         yield Page(path, "method", partial(methods.read_method, results, name))
@@ -136,9 +136,9 @@ def _write_part(
         for page in list(list_pages(results))[part::N_PARTS]:
             with round_one(f"page {page.path}"):
                 data = page.query() | {"has_reports": has_reports}
-                for language in LANGUAGES:
+                for language, of_language in list_folders(about).items():
                     html = render_page(page.path, page.template, data, language, about)
-                    _write(folder / FOLDERS[language] / page.path, html)
+                    _write(folder / of_language / page.path, html)
                 if page.template == "boat":
                     _write_traces(folder, data)
         if part == 0:
