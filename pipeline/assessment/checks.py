@@ -11,14 +11,14 @@ looks. Most sound tows of some season exceed it (log 2), or the method already a
 that do not count), or it is a property of how the curve may be used.
 """
 
-from typing import Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
-import polars as pl
-
-from pipeline.crews import STANDARD_CREWS, get_limits
 from pipeline.history import STEERED_STRAIGHT_FROM
 from pipeline.messages import Sentence, say
 from pipeline.tables.severity import Severity
+
+if TYPE_CHECKING:
+    import polars as pl
 
 Limit: TypeAlias = float | str | None
 """One number, a column of `crew_classes` with one for each class, or no limit on this side."""
@@ -47,17 +47,25 @@ class Check(NamedTuple):
     last_season: int | None = None
 
     def limits(
-        self, crew_class: str, crew_classes: pl.DataFrame = STANDARD_CREWS
+        self, crew_class: str, crew_classes: "pl.DataFrame | None" = None
     ) -> tuple[float | None, float | None]:
-        """Return the lowest and highest limit for a class, one of `crew_classes`."""
-        return (
-            _get_limit(self.lowest, crew_class, crew_classes),
-            _get_limit(self.highest, crew_class, crew_classes),
-        )
+        """Return the lowest and highest limit for a class, one of `crew_classes`.
+
+        Args:
+            crew_class: its code.
+            crew_classes: the table of that name; the default classes when left out.
+        """
+        lowest = _get_limit(self.lowest, crew_class, crew_classes)
+        return lowest, _get_limit(self.highest, crew_class, crew_classes)
 
 
-def _get_limit(limit: Limit, crew_class: str, crew_classes: pl.DataFrame) -> float | None:
-    return get_limits(crew_classes, limit)[crew_class] if isinstance(limit, str) else limit
+def _get_limit(limit: Limit, crew_class: str, crew_classes: "pl.DataFrame | None") -> float | None:
+    if not isinstance(limit, str):
+        return limit
+    from pipeline.crews import STANDARD_CREWS, get_limits  # noqa: PLC0415 - help needs no Polars
+
+    classes = STANDARD_CREWS if crew_classes is None else crew_classes
+    return get_limits(classes, limit)[crew_class]
 
 
 WAYS_LIMIT: Final = 0.05

@@ -88,7 +88,7 @@ class ListedFiles(dy.Schema):
     """Every file that was looked at."""
 
     path = column.text("file, relative to the archive", primary_key=True)
-    kind = column.text("what it is, as `[files]` of archief.toml calls it, or archief.toml")
+    kind = column.text("what it is, as `[files]` of archief.toml calls it, or profile")
     sha256 = column.sha256("its content hash")
     size_bytes = dy.Int64(description="its size", min=0)
 

@@ -154,7 +154,9 @@ def list_archive_files(root: Path, profiles: Profiles | None = None) -> list[Arc
 
 def _name_kind(file: ArchiveFile) -> str:
     """Return what a file is: a kind of list by its name, samples, or the profile."""
-    return file.kind.name if isinstance(file.kind, ListKind) else file.kind
+    if isinstance(file.kind, ListKind):
+        return file.kind.name
+    return "profile" if file.kind == PROFILE_FILE else file.kind
 
 
 def _name_file(kind: ListKind, profiles: Profiles) -> str:

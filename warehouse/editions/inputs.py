@@ -11,7 +11,6 @@ from typing import Final
 
 import polars as pl
 
-from warehouse.archive.profile import PROFILE_FILE
 from warehouse.store.editions import Manifest
 from warehouse.store.store import Store, fingerprint
 
@@ -24,9 +23,7 @@ NOT_INPUT: Final = JUDGED + (
 """What a tow is called or said to be does not change its numbers; its doubts follow from others."""
 
 INPUTS_HASH: Final = "inputs_sha256"
-MAKE_NUMBERS: Final = (
-    "boats", "tows", "windows", "force_checks", "lamps", PROFILE_FILE,
-)  # fmt: skip
+MAKE_NUMBERS: Final = ("boats", "tows", "windows", "force_checks", "lamps", "profile")
 """Kinds of files, beside samples, that can change a number of an edition."""
 OLDER_SOURCES: Final = "inputs.csv"
 """What editions up to version 1.0.0 were made from; since then the manifest and the tows say it."""
