@@ -80,7 +80,7 @@ class Folders(dg.ConfigurableResource["Folders"]):
         listed = self.methods or self.settings.methods
         names = methods_to_apply(self.store, listed)
         known = KnownMethods.from_store(self.store)
-        return [known.get(name) for name in names]
+        return list(map(known.get, names))
 
 
 class Lake(dg.ConfigurableIOManager):

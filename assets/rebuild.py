@@ -54,6 +54,8 @@ def rebuild(
         HerijkError: there is no archive, a promise was broken, or another rebuild is at work.
     """
     check_apart(archive, data)
+    if not data.exists():
+        list_archive_files(archive)  # a first rebuild that is refused leaves no folder
     store = Store(data.resolve())
     asked = fingerprint(sorted(methods), sorted(seasons or ()))
     with explain_machine_faults(data), hold_write_lock(data):

@@ -30,7 +30,7 @@ def applied_methods(folders: Folders) -> pl.DataFrame:
 def read_methods(folders: Folders, table: pl.DataFrame) -> list[Method]:
     """Return the methods that the rows of a table name."""
     known = KnownMethods.from_store(folders.store)
-    return [known.get(name) for name in table["method"]]
+    return list(map(known.get, table["method"]))
 
 
 @dg.asset

@@ -46,8 +46,6 @@ TRACE_ROW_PX: Final = 118
 TRACE_GAP_PX: Final = 12
 """Between runs."""
 
-CW_ENDS: Final = ("cw_lo_kg_m", "cw_hi_kg_m")
-
 
 def draw_groups(
     language: Language,
@@ -72,14 +70,14 @@ def draw_groups(
         with_one: draw a line at 1, for ratios.
         title: of the axis; that of the column when left out.
     """
-    known = rows.drop_nulls(value).to_dicts()
-    if not known:
+    known = rows.drop_nulls(value)
+    if known.is_empty():
         return Markup()
-    methods = list(dict.fromkeys(row["method"] for row in known))
-    groups = list(dict.fromkeys(row[group] for row in known))
+    methods = known["method"].unique(maintain_order=True).to_list()
+    groups = known[group].unique(maintain_order=True).to_list()
     legend = _list_method_entries(language, methods)
     plot = Plot(language, legend=legend)
-    drawn = [row[name] for row in known for name in (value, *ends)]
+    drawn = _stack_columns(known, [value, ends[0], ends[1]])
     y = plot.fit_y(drawn, including=[1.0] if with_one else [], bulk=group == "tow")
     plot.add_axes(None, y, "", title or language.get_title(value))
     width = (plot.right - plot.left) / len(groups)
@@ -87,8 +85,8 @@ def draw_groups(
         plot.add_path(
             f"M{plot.left} {y(1):.1f}H{plot.right}", GREY, style={"stroke-dasharray": "4 3"}
         )
-    _label_groups(plot, [language.name_code(str(name)) for name in groups], width)
-    for row in known:
+    _label_groups(plot, list(map(language.name_code, map(str, groups))), width)
+    for row in known.to_dicts():
         kind = _get_method_kind(row["method"])
         place = (methods.index(row["method"]) + 1) / (len(methods) + 1)
         x = plot.left + (groups.index(row[group]) + place) * width
@@ -131,26 +129,29 @@ def draw_seasons(language: Language, rows: pl.DataFrame, caption: str) -> Markup
         rows: of `season_changes`.
         caption: of the picture.
     """
-    known = rows.drop_nulls("median_ratio").sort("season").to_dicts()
-    if not known:
+    known = rows.drop_nulls("median_ratio").sort("season")
+    if known.is_empty():
         return Markup()
-    methods = list(dict.fromkeys(row["method"] for row in known))
-    seasons = list(dict.fromkeys(row["season"] for row in known))
-    eras = [era for era in ERAS if any(era.first <= season <= era.last for season in seasons)]
+    methods = known["method"].unique(maintain_order=True).to_list()
+    by_era = []
+    for era in ERAS:
+        of_era = known.filter(pl.col("season").is_between(era.first, era.last))
+        if not of_era.is_empty():
+            by_era.append((era, of_era))
     legend = _list_method_entries(language, methods)
-    height = SEASON_ROW_PX * len(seasons) + ERA_ROW_PX * len(eras) + 90
+    height = SEASON_ROW_PX * known["season"].n_unique() + ERA_ROW_PX * len(by_era) + 90
     plot = Plot(language, 480, height, SEASON_LABEL_PX, 30, legend)
-    ratios = [row[name] for row in known for name in ("lowest_ratio", "highest_ratio")]
-    x = plot.fit_x([100.0 * (ratio - 1.0) for ratio in ratios], including=[0.0])
+    changes = 100.0 * (_stack_columns(known, ["lowest_ratio", "highest_ratio"]) - 1.0)
+    x = plot.fit_x(changes, including=[0.0])
     plot.add_grid(x, language.say(say("Cw by the method / Cw as published [%]")), signed=True)
     top = float(plot.top)
-    for era in eras:
+    for era, of_era in by_era:
         plot.add_text(4, top + 16, language.say(era.measured), size=11)
         plot.add_path(f"M4 {top:.1f}H{plot.right}", GREY, style={"stroke-opacity": 0.5})
         top += ERA_ROW_PX
-        for season in [one for one in seasons if era.first <= one <= era.last]:
-            plot.add_text(4, top + SEASON_ROW_PX / 2 + 4, str(season))
-            for row in [one for one in known if one["season"] == season]:
+        for of_season in of_era.partition_by("season", maintain_order=True):
+            plot.add_text(4, top + SEASON_ROW_PX / 2 + 4, str(of_season["season"][0]))
+            for row in of_season.to_dicts():
                 place = (methods.index(row["method"]) + 1) / (len(methods) + 1)
                 _add_season(plot, x, top + place * SEASON_ROW_PX, row)
             top += SEASON_ROW_PX
@@ -167,6 +168,11 @@ def _add_season(plot: Plot, x: Scale, y: float, row: Row) -> None:
     plot.add_path(f"M{low:.1f} {y:.1f}H{high:.1f}", ink, style={"stroke-width": 2})
     tip = _write_tip(plot.language, row, "season", "method", "median_ratio")
     plot.add_point(middle, y, kind, tip)
+
+
+def _stack_columns(rows: pl.DataFrame, names: Sequence[str]) -> pl.Series:
+    """Return the numbers of columns, one column below the other."""
+    return rows.select(names).unpivot()["value"]
 
 
 def _list_method_entries(language: Language, methods: Sequence[str]) -> list[LegendEntry]:
@@ -212,7 +218,7 @@ def draw_curves(
         legend += [LegendEntry(language.name_method(name), None, ink) for name, ink in inks.items()]
     plot = Plot(language, width, height, legend=legend)
     x = plot.fit_x(rows["speed_m_s"])
-    y = plot.fit_y([value for name in ("cw_kg_m", *CW_ENDS) for value in rows[name]])
+    y = plot.fit_y(_stack_columns(rows, ["cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]))
     plot.add_axes(x, y, language.say(SPEED), "Cw [kg/m]")
     for method, ink in inks.items():
         _add_curve(plot, x, y, rows.filter(method=method), ink)
@@ -221,25 +227,18 @@ def draw_curves(
 
 def _add_curve(plot: Plot, x: Scale, y: Scale, rows: pl.DataFrame, ink: str) -> None:
     """Add what a method makes of a tow: band, line, interval at declared speed and run points."""
-    line = rows.filter(kind="line").to_dicts()
-    points = rows.filter(kind="point").to_dicts()
-    declared = rows.filter(kind="declared").to_dicts()
-    band = [row for row in line if row["cw_lo_kg_m"] is not None]
-    plot.add_band(
-        [x(row["speed_m_s"]) for row in band],
-        [y(row["cw_lo_kg_m"]) for row in band],
-        [y(row["cw_hi_kg_m"]) for row in band],
-        ink,
-    )
-    through = [(x(row["speed_m_s"]), y(row["cw_kg_m"])) for row in line]
-    plot.add_line(through, ink, style={"stroke-width": 2})
-    for row in declared:
-        if row["cw_lo_kg_m"] is not None:
-            low, high = y(row["cw_lo_kg_m"]), y(row["cw_hi_kg_m"])
-            is_dashed = row["interval"] != COMPLETE
-            plot.add_interval(x(row["speed_m_s"]), low, high, ink, dashed=is_dashed)
+    line = rows.filter(kind="line")
+    band = line.drop_nulls("cw_lo_kg_m")
+    low, high = map(y, band["cw_lo_kg_m"]), map(y, band["cw_hi_kg_m"])
+    plot.add_band(list(map(x, band["speed_m_s"])), list(low), list(high), ink)
+    through = zip(map(x, line["speed_m_s"]), map(y, line["cw_kg_m"]), strict=True)
+    plot.add_line(list(through), ink, style={"stroke-width": 2})
+    for row in rows.filter(kind="declared").drop_nulls("cw_lo_kg_m").to_dicts():
+        is_dashed = row["interval"] != COMPLETE
+        lower, upper = y(row["cw_lo_kg_m"]), y(row["cw_hi_kg_m"])
+        plot.add_interval(x(row["speed_m_s"]), lower, upper, ink, dashed=is_dashed)
     language = plot.language
-    for row in points:
+    for row in rows.filter(kind="point").to_dicts():
         tip = language.say(say("run {run}: {speed_m_s} m/s, {cw_kg_m} kg/m")).format(
             run=row["run"],
             speed_m_s=language.write("speed_m_s", row["speed_m_s"]),
@@ -272,7 +271,7 @@ def draw_scatter(
         caption: of the picture.
     """
     known = tows.drop_nulls([quantity, explaining])
-    every = [*known[quantity], *known[ends[0]], *known[ends[1]]]
+    every = _stack_columns(known, [quantity, ends[0], ends[1]])
     kinds = dict(zip([code for code, _ in language.list_crews()], CREW_KINDS, strict=False))
     crews = [LegendEntry.from_kind(language.name_crew(crew), kind) for crew, kind in kinds.items()]
     panels = []
@@ -283,8 +282,8 @@ def draw_scatter(
         plot.add_axes(x, y, language.get_title(explaining), language.get_title(quantity))
         own = lines.filter(method=method, quantity=quantity, explaining=explaining)
         for of_class in own.partition_by("crew_class", maintain_order=True):
-            at = [x(value) for value in of_class["x"]]
-            plot.add_band(at, [y(v) for v in of_class["lo"]], [y(v) for v in of_class["hi"]])
+            at = list(map(x, of_class["x"]))
+            plot.add_band(at, list(map(y, of_class["lo"])), list(map(y, of_class["hi"])))
             plot.add_line(list(zip(at, map(y, of_class["y"]), strict=True)), GREY)
         for row in known.filter(method=method).to_dicts():
             kind = kinds.get(row["crew_class"], CREW_KINDS[0])
@@ -429,8 +428,8 @@ def _plot_traces(language: Language, seconds: pl.DataFrame) -> tuple[Plot, Mappi
 def _fit_trace_row(seconds: pl.DataFrame, plot: Plot, row: int) -> Scale:
     """Return the scale of a row of traces."""
     top = plot.top + row * TRACE_ROW_PX
-    values = [value for name, _ in TRACES[row][1] for value in seconds[name]]
-    return fit_scale(values, top + TRACE_ROW_PX - 22, top)
+    drawn = _stack_columns(seconds, list(dict(TRACES[row][1])))
+    return fit_scale(drawn, top + TRACE_ROW_PX - 22, top)
 
 
 def trace_lines(seconds: pl.DataFrame) -> Markup:

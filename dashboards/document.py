@@ -355,8 +355,8 @@ def _to_frame(rows: Sequence[Mapping[str, Any]]) -> pl.DataFrame:
     series = []
     for name in names:
         values = [row.get(name) for row in rows]
-        is_text = any(isinstance(value, Markup | Sentence) for value in values)
-        dtype = pl.Object if is_text or any(isinstance(v, dict) for v in values) else None
+        is_object = any(isinstance(value, Markup | Sentence | dict) for value in values)
+        dtype = pl.Object if is_object else None
         series.append(pl.Series(name, values, dtype=dtype, strict=False))
     return pl.DataFrame(series)
 

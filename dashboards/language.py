@@ -11,7 +11,15 @@ from typing import Any, Final
 from markupsafe import Markup, escape
 
 from dashboards import words
-from pipeline.messages import DECIMALS, Sentence, format_probability, say, speaker, spoken
+from pipeline.messages import (
+    DECIMALS,
+    LANGUAGES,
+    Sentence,
+    format_probability,
+    say,
+    speaker,
+    spoken,
+)
 from pipeline.method.definition import LAST_SEASON
 from pipeline.tables.display import Kind, get_column
 
@@ -23,6 +31,12 @@ MINUS: Final = "\u2212"
 def _list_field_names(text: str) -> list[str]:
     """Return the names in braces of a text."""
     return [name for _, name, _, _ in Formatter().parse(text) if name]
+
+
+def get_other_language(tag: str) -> str:
+    """Return the tag of the language that a page has beside its own."""
+    (other,) = set(LANGUAGES) - {tag}
+    return other
 
 
 class Language:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dashboards.document import Document
-from dashboards.language import Language
+from dashboards.language import Language, get_other_language
 from pipeline.messages import LANGUAGES
 
 
@@ -36,7 +36,9 @@ def render_page(
     """
     folders = list_folders(about)
     folder = folders.get(language, "")
-    other = next((tag for tag in LANGUAGES if tag != language and tag in folders), "")
+    other = get_other_language(language)
+    if other not in folders:
+        other = ""
     root = site + folder if site else "../" * path.count("/")
     site_root = site or root + "../" * bool(folder)
     document = Document(Language(language, about), root, data.get("chosen"))

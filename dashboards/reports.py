@@ -1,14 +1,16 @@
 """What a rebuild changed and what its checks say: headlines, a page beside the site, and a mail."""
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import polars as pl
 
 from dashboards import words
 from dashboards.document import Document
-from dashboards.language import Language
+from dashboards.language import Language, get_other_language
 from dashboards.page import render_page
 from dashboards.reading import read_blocks
 from pipeline.messages import LANGUAGES
@@ -112,15 +114,18 @@ def make_report_pages(
         "moment": show_minute(run.changed_at),
         "rows_of_checks": of_checks,
     }
+    to_frame = partial(pl.DataFrame, infer_schema_length=None)
     frames = {
-        name: pl.DataFrame(getattr(changes, name), infer_schema_length=None)
-        for name in ("lines", "tows", "set_aside", "factors")
+        "lines": to_frame(changes.lines),
+        "tows": to_frame(changes.tows),
+        "set_aside": to_frame(changes.set_aside),
+        "factors": to_frame(changes.factors),
     }
     with Views(store) as views:
         about = views.about()
     pages = {}
     for language in LANGUAGES:
-        other = next(tag for tag in LANGUAGES if tag != language)
+        other = get_other_language(language)
         pages[PAGES[language]] = render_page(
             PAGES[language], "report", data | frames, language, about, "../site/", PAGES[other]
         )
@@ -140,7 +145,7 @@ def write_mail(
         *([dutch.say(words.SIMULATED), ""] if simulated else []),
         *lines,
         "",
-        *(f"  {line}" for line in moved),
+        textwrap.indent("\n".join(moved), "  "),
         *([f"  + {n_more}"] if n_more > 0 else []),
     ]
     return f"{dutch.fill_in('Tow tests re-based')}: {headlines[0]}", "\n".join([*text, ""])

@@ -102,23 +102,25 @@ def _wrap(text: str, width: int, indent: str = "") -> list[str]:
 
 
 class Column(NamedTuple):
-    """A column of a table: its title on one or more lines, its cells, how wide it is and can be."""
+    """A column of a table: its name, that on one or more lines, its cells, and its width."""
 
+    name: str
     title: str
     cells: Sequence[str]
     width: int
     min_width: int
 
     @classmethod
-    def from_cells(cls, title: str, cells: Sequence[str]) -> Self:
-        """Return the column of cells; a number or a word is never broken."""
+    def from_cells(cls, column: Sequence[str]) -> Self:
+        """Return the column of a name and the cells below it; a number or word is never broken."""
+        name = column[0]
+        cells = [cell or NOTHING for cell in column[1:]]
         widest = max(map(len, cells), default=0)
-        words = [word for cell in cells for word in cell.split(" ")]
-        longest_word = max(map(len, words), default=0)
-        lines = textwrap.wrap(title, max(MIN_HEADING_WIDTH, widest), break_long_words=False)
+        longest_word = max(map(len, " ".join(cells).split(" ")))
+        lines = textwrap.wrap(name, max(MIN_HEADING_WIDTH, widest), break_long_words=False)
         of_title = max(map(len, lines), default=0)
         min_width = max(longest_word, min(widest, MIN_TEXT_WIDTH), of_title)
-        return cls("\n".join(lines), cells, max(widest, of_title), min_width)
+        return cls(name, "\n".join(lines), cells, max(widest, of_title), min_width)
 
 
 def _draw_table(block: Block, width: int) -> str:
@@ -126,45 +128,45 @@ def _draw_table(block: Block, width: int) -> str:
 
     Where not all columns fit, some are left out, and named below the table.
     """
-    titles, *body = block.rows
-    shown = [[cell or NOTHING for cell in row] for row in body]
-    columns = [
-        Column.from_cells(title, cells)
-        for title, cells in zip(titles, zip(*shown, strict=True), strict=True)
-    ]
+    columns = list(map(Column.from_cells, zip(*block.rows, strict=True)))
     own_width = width - len(INDENT)
-    fitting = _choose_columns([one.min_width for one in columns], block.not_narrow, own_width)
+    fitting, left_out = _choose_columns(columns, block.not_narrow, own_width)
     table = Table(box=None, pad_edge=False, header_style="", collapse_padding=True)
-    title_height = max(columns[place].title.count("\n") for place in fitting)
-    widths = _fit_widths([columns[place] for place in fitting], own_width)
-    for place, column_width in zip(fitting, widths, strict=True):
-        column = columns[place]
+    title_height = max(column.title.count("\n") for column in fitting)
+    for column, column_width in zip(fitting, _fit_widths(fitting, own_width), strict=True):
         table.add_column(
             "\n" * (title_height - column.title.count("\n")) + column.title,
             justify="right" if all(map(NUMBER.fullmatch, column.cells)) else "left",
             overflow="fold",
             width=column_width,
         )
-    for row in shown:
-        table.add_row(*(row[place] for place in fitting))
+    for cells in zip(*(column.cells for column in fitting), strict=True):
+        table.add_row(*cells)
     lines = [*_print(table, own_width)]
-    left_out = [title for place, title in enumerate(titles) if place not in fitting]
     if left_out:
-        text = tell("Left out for want of room, see --wide: {}", ", ".join(left_out))
+        names = ", ".join(column.name for column in left_out)
+        text = tell("Left out for want of room, see --wide: {}", names)
         lines += textwrap.wrap(text, width, initial_indent=INDENT, subsequent_indent=INDENT)
     return "\n".join(lines)
 
 
-def _choose_columns(widths: Sequence[int], not_narrow: Collection[int], width: int) -> list[int]:
-    """Return the places of the columns that fit on a line, each with a blank between.
+def _choose_columns(
+    columns: Sequence[Column], not_narrow: Collection[int], width: int
+) -> tuple[list[Column], list[Column]]:
+    """Return the columns that fit on a line, each with a blank between, and those left out.
 
     Left out are, from the last on, first those that a phone does not show, then others; one stays.
     """
-    places = list(range(len(widths)))
+    places = range(len(columns))
     candidates = sorted(places, key=lambda place: (place in not_narrow, place))
-    while len(places) > 1 and sum(widths[place] + 1 for place in places) - 1 > width:
-        places.remove(candidates.pop())
-    return places
+    taken = sum(column.min_width + 1 for column in columns) - 1
+    while len(candidates) > 1 and taken > width:
+        taken -= columns[candidates.pop()].min_width + 1
+    fitting: list[Column] = []
+    left_out: list[Column] = []
+    for place, column in enumerate(columns):
+        (fitting if place in candidates else left_out).append(column)
+    return fitting, left_out
 
 
 def _fit_widths(columns: Sequence[Column], width: int) -> list[int]:

@@ -13,11 +13,15 @@ import numpy as np
 from pipeline.arrays import FloatArray
 
 AIR_DENSITY_KG_M3: Final = 1.225
+GRAVITY_M_S2: Final = 9.81
 CREW_FRONT_AREA_M2: Final = 0.5
 """Added to breadth x height; printed as 2 x 0.25, presumably the crew."""
 
 CREW_SIDE_AREA_M2: Final = 1.0
 """Added to length x height in the oblique-wind formula of 2015."""
+
+BEAM_DRAUGHTS: Final = 6.0
+"""Beam / draught of sloops. Stated assumption: no list holds draughts."""
 
 USUAL_BOW_HEIGHT_M: Final = 1.0
 """Height taken for a bow that nobody measured (inferred). Only boats towed without an anemometer

@@ -135,7 +135,9 @@ def tow_rows(world: World) -> pl.DataFrame:
         [_tow_row(world, tow) for tow in world.tows], infer_schema_length=None
     ).with_columns(
         pl.col("season", "rowers", "sample_rate_hz").cast(pl.Int32),
-        pl.col("speed_correction_ratio", "water_temperature_c", *FREEBOARDS).cast(pl.Float64),
+        pl.col("speed_correction_ratio", "water_temperature_c", "salinity_g_kg", *FREEBOARDS).cast(
+            pl.Float64
+        ),
     )
 
 
@@ -155,6 +157,7 @@ def _tow_row(world: World, tow: Tow) -> dict[str, object]:
         "weight_after_kg": tow.weight_after_kg,
         "crew_weight_kg": tow.crew_kg,
         "water_temperature_c": tow.listed_temperature_c,
+        "salinity_g_kg": tow.salinity_g_kg or None,
         "speed_correction_ratio": None,
         "altered": tow.altered_reported,
         "sample_rate_hz": world.settings.rate_hz,

@@ -14,7 +14,7 @@ from pipeline.method.options import find_basis
 from pipeline.method.variant import Difference, differences
 from pipeline.register.register import name_draft
 from pipeline.tables.display import STEP_CHANGE
-from pipeline.tables.row import Row
+from pipeline.tables.row import Row, pick_columns
 from warehouse.queries.answers import add_peers, answers, list_season_faults, select_own_races
 from warehouse.queries.views import DRAFT, prepare_curve_figure
 from warehouse.store.methods import KnownMethods
@@ -65,7 +65,7 @@ def read_boat(
 
     boat = results.select_boat("boats", fsn_no).row(0, named=True)
     is_draft = pl.col("edition").str.starts_with(DRAFT)
-    of_editions = ~is_draft | pl.col("edition").is_in([name_draft(name) for name in shown])
+    of_editions = ~is_draft | pl.col("edition").is_in(list(map(name_draft, shown)))
     curves = own("curves").with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
@@ -174,7 +174,7 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     decided_steps = find_decided_steps(find_changed_options(results, previous, edition))
     by_boat: dict[str, list[Row]] = {}
     for line in lines.to_dicts():
-        own = races_by_crew.get(tuple(line[name] for name in CREW), races.head(0)).to_dicts()
+        own = races_by_crew.get(tuple(pick_columns(line, CREW).values()), races.head(0)).to_dicts()
         of_season = faults.get((line["method"], line["season"]), [])
         answer = describe_answer(line, own, of_season)
         answer["decided_steps"] = decided_steps

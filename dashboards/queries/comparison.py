@@ -10,7 +10,7 @@ from dashboards.queries.results import Data
 from pipeline.method.variant import differences
 from pipeline.register.register import name_draft
 from pipeline.register.replay import RaceRules
-from pipeline.tables.row import Row
+from pipeline.tables.row import Row, pick_columns
 from warehouse.editions.compare import DiffReport, report_with_races
 from warehouse.store.editions import Edition, list_edition_names, read_edition
 from warehouse.store.methods import KnownMethods
@@ -67,7 +67,7 @@ def _sum_up(effect: DiffReport) -> Data:
     moved = [race for race in ranked if race["old_rank"] != race["new_rank"]]
     return {
         "changed": sum_up_changes(_list_lines(effect)),
-        "lines": [_describe_line(row) for row in effect.rows],
+        "lines": list(map(_describe_line, effect.rows)),
         "causes": [one | {"main_cause": pick_cause(one)} for one in effect.causes],
         "n_ranked": len(ranked),
         "moved": moved,
@@ -78,17 +78,15 @@ def _sum_up(effect: DiffReport) -> Data:
 
 def _list_lines(effect: DiffReport) -> pl.DataFrame:
     """Return the lines as `sum_up_changes` reads them."""
-    log_known = {
-        f"{side}_log_known": pl.lit(edition not in effect.runs_alone)
-        for side, edition in (("old", effect.from_edition), ("new", effect.to_edition))
-    }
-    names = ("from_edition", "to_edition", "change", "exceeds_interval")
+    texts = ("from_edition", "to_edition", "change")
+    schema = dict.fromkeys((*texts, "causes"), pl.String) | {"exceeds_interval": pl.Boolean}
     rows = [
-        {name: row[name] for name in names} | {"causes": json.dumps(row["causes"])}
-        for row in effect.rows
+        pick_columns(row, schema) | {"causes": json.dumps(row["causes"])} for row in effect.rows
     ]
-    schema = dict.fromkeys((*names[:3], "causes"), pl.String) | {"exceeds_interval": pl.Boolean}
-    return pl.DataFrame(rows, schema=schema).with_columns(**log_known)
+    return pl.DataFrame(rows, schema=schema).with_columns(
+        old_log_known=effect.from_edition not in effect.runs_alone,
+        new_log_known=effect.to_edition not in effect.runs_alone,
+    )
 
 
 def _describe_line(row: Row) -> Row:
@@ -96,5 +94,5 @@ def _describe_line(row: Row) -> Row:
     codes = [row["change"]]
     if row["change"] == "removed":
         codes.append(row["new_status"] or "gone")
-    ranks = {f"{side}_speed_rank": row[f"{side}_rank"] for side in ("old", "new")}
+    ranks = {"old_speed_rank": row["old_rank"], "new_speed_rank": row["new_rank"]}
     return row | ranks | {"change": codes}

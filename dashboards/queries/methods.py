@@ -73,7 +73,7 @@ def _explain_steps(
         largest=pl.col("factor").sort_by(size).last(),
         tow=pl.col("tow_id").sort_by(size).last(),
     )
-    effect_by_step = {row["step"]: row for row in effects.to_dicts()}
+    effect_by_step = effects.rows_by_key("step", named=True, unique=True, include_key=True)
     last_steps = method.ranges[-1].steps
     explained = []
     for step in dict.fromkeys((*STEP_ORDER, *Steps.model_fields)):

@@ -241,7 +241,7 @@ def read_years(results: Results, method: str | None = None) -> Data:
         "changed_lines": lines.filter(pl.col("change") != "same"),
         "winners": views.ask("year_winners").filter(is_shown),
         "methods": shown,
-        "names": [str(year) for year in years["year"].unique().sort()],
+        "names": list(map(str, years["year"].unique().sort())),
         "chosen": {"method": chosen, "year": str(most_changed["year"] if most_changed else 0)},
     }
 
@@ -348,7 +348,7 @@ def sum_up_repeats(spread: pl.DataFrame, method: str) -> Data:
     by_era = spread.filter(pl.col("scope") != "all").drop_nulls("sd_ratio")
     repeats = []
     for (era,), rows in by_era.group_by("scope", maintain_order=True):
-        by_method = {row["method"]: row for row in rows.to_dicts()}
+        by_method = rows.rows_by_key("method", named=True, unique=True, include_key=True)
         then, now = next(iter(by_method.values())), by_method.get(method)
         if now is not None:
             repeats.append({"era": era, "now": now, "then": then})

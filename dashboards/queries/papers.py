@@ -17,7 +17,7 @@ from pipeline.method.definition import COMPLETE, RUNS_ALONE
 from pipeline.register.causes import summarise_causes
 from pipeline.register.register import name_draft
 from pipeline.tables.keys import UNKNOWN_TYPE
-from pipeline.tables.row import Row
+from pipeline.tables.row import Row, pick_columns
 from warehouse.queries.answers import compared, replayed
 from warehouse.queries.documents import (
     SMOOTH_SPEEDS,
@@ -80,7 +80,7 @@ def read_certificates(
 def _describe_certificate(line: Row, day: dt.date, site: str) -> Data:
     """Return a line with its curve, the power that it asks, and the code that a phone reads."""
     smooth = compute_line_curve(line, SMOOTH_SPEEDS)
-    ends = {name: line[name] for name in ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")}
+    ends = pick_columns(line, ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"))
     declared = pl.DataFrame([{"speed_m_s": line["declared_speed_m_s"], **ends, "kind": "declared"}])
     interval = COMPLETE if line["new_log_known"] else RUNS_ALONE
     curve = pl.concat([smooth.with_columns(kind=pl.lit("line")), declared], how="diagonal_relaxed")

@@ -5,6 +5,7 @@ prepares the values that the sentences fill in.
 """
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import Final
 
 from dashboards.queries.results import Data
@@ -16,6 +17,9 @@ from warehouse.queries.assess import Assessment
 
 COUNTED: Final = ("no_curve", "few_runs", "runs_set_aside", "unbalanced_runs", "parts_set_aside")
 """Findings that observe a number of runs."""
+
+AS_TIMES: Final = ("samples_scatter", "shallow_water")
+"""Findings whose sentence says how many times."""
 
 AS_RATIO: Final = ("unusual_calibration", "log_not_linear")
 """Findings that observe a ratio with three decimals; other ratios are written in per cent."""
@@ -62,15 +66,16 @@ def describe_tow(tow: Assessment, *, log_known: bool) -> Data:
         log_known: whether intervals of the method hold the error of the log.
     """
     found = [row for row in tow.first_assessment if row["finding"]]
+    ways = []
+    for way in tow.ways_to_use:
+        used, replaced = map(name_run, way["runs"]), map(name_run, way["instead_of"])
+        ways.append(way | {"used": list(used), "replaced": list(replaced)})
     return vars(tow) | {
         "log_known": log_known,
         "findings": [_describe_finding(row, found) for row in _gather_runs_not_planned(found)],
         "rules": [_sum_up_rule(tow, rule) for rule in RULES],
-        "redo_runs": None if tow.redo is None else _name_runs(tow.redo),
-        "ways": [
-            way | {"used": _name_runs(way["runs"]), "replaced": _name_runs(way["instead_of"])}
-            for way in tow.ways_to_use
-        ],
+        "redo_runs": None if tow.redo is None else list(map(name_run, tow.redo)),
+        "ways": ways,
     }
 
 
@@ -98,7 +103,7 @@ def _describe_finding(row: Row, found: Sequence[Row]) -> Row:
     size_decimals = 2 if finding in SIZES_IN_METRES else 0
     return row | {
         "code": code,
-        "runs_named": _name_runs(row["runs"]),
+        "runs_named": list(map(name_run, row["runs"])),
         "selection": ",".join(map(name_run, row["runs"])),
         "observed": _scale(row, row["observed"]),
         "limit": _scale(row, row["limit"]),
@@ -124,7 +129,7 @@ def _scale(row: Row, value: float | None) -> tuple[float, int, str] | None:
     finding, unit = row["finding"], row["unit"]
     if finding in COUNTED:
         return _pack(value, 0)
-    if finding == "samples_scatter":
+    if finding in AS_TIMES:
         return _pack(value, 1)
     if finding in AS_RATIO:
         return _pack(value, 3)
@@ -138,7 +143,8 @@ def _gather_runs_not_planned(found: Sequence[Row]) -> list[Row]:
     extra = [row for row in found if row["finding"] == "run_not_planned"]
     if not extra:
         return list(found)
-    gathered = extra[0] | {"runs": [run for row in extra for run in row["runs"]]}
+    runs = list(chain.from_iterable(row["runs"] for row in extra))
+    gathered = extra[0] | {"runs": runs}
     return [gathered if row is extra[0] else row for row in found if row not in extra[1:]]
 
 
@@ -146,13 +152,8 @@ def _sum_up_rule(tow: Assessment, rule: str) -> Row:
     """Return a rule of the first assessment with its worst verdict and the runs that it names."""
     own = [row for row in tow.first_assessment if row["rule"] == rule]
     again = [row["runs"] for row in own if row["verdict"] == "tow_again"]
-    runs = {run for of_finding in again for run in of_finding} if all(again) else set()
-    names = [name_run(run) for run in sorted(runs)]
-    return {"rule": rule, "verdict": own[0]["verdict"], "runs": ", ".join(names)}
-
-
-def _name_runs(runs: Sequence[int]) -> list[str]:
-    return [name_run(run) for run in runs]
+    runs = sorted(set(chain.from_iterable(again))) if all(again) else []
+    return {"rule": rule, "verdict": own[0]["verdict"], "runs": ", ".join(map(name_run, runs))}
 
 
 def name_run(run: int) -> str:

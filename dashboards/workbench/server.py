@@ -20,7 +20,7 @@ from starlette.routing import Route
 from dashboards import fonts
 from dashboards.document import Document
 from dashboards.guard import make_server
-from dashboards.language import Language
+from dashboards.language import Language, get_other_language
 from dashboards.site import STATIC
 from dashboards.workbench.bench import Asked, Bench, Saving
 from dashboards.workbench.form import CONTROLS, Control
@@ -122,7 +122,7 @@ class BenchPage:
     def _render(self, asked: Asked, results: dict[str, Any] | None, refused: str) -> str:
         bench = self._bench
         ranges = bench.list_ranges(asked)
-        other = next(tag for tag in LANGUAGES if tag != self.language)
+        other = get_other_language(self.language)
         tows = results["tows"] if results else []
         chosen = {"tow_id": tows[0] if tows else ""}
 

@@ -218,5 +218,4 @@ def show_results(
 
 def show_files(files: Iterable[Path], said: str | None = None) -> None:
     """Print which files were written: their names, or a sentence about them."""
-    names = [str(file) for file in files]
-    show("files", {"files": names, "said": said}, ("files",))
+    show("files", {"files": list(map(str, files)), "said": said}, ("files",))

@@ -42,7 +42,7 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     from warehouse.store.methods import KnownMethods
 
     known = KnownMethods.from_store(store)
-    chosen = applied(store.root, [known.keep(name) for name in methods])
+    chosen = applied(store.root, list(map(known.keep, methods)))
     try:
         with explain_machine_faults(store.root), rebuild_shown():
             news = run(archive, store.root, chosen, seasons)

@@ -8,7 +8,6 @@ import gettext
 import os
 from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 from typing import Any, Final
 
 import click
@@ -21,15 +20,16 @@ EXAMPLES: Final = say("Examples")
 
 def language_of(arguments: Sequence[str], environment: Mapping[str, str]) -> str:
     """Return the language that `--lang` asks for, or else that of the system: `nl` or `en`."""
-    after = pairwise(arguments)
-    asked = [
-        *(argument.partition("=")[2] for argument in arguments if argument.startswith("--lang=")),
-        *(value for argument, value in after if argument == "--lang"),
-    ]
-    known = [language for language in asked if language in LANGUAGES]
-    named = ("LC_ALL", "LC_MESSAGES", "LANG")
-    system = next((environment[name] for name in named if environment.get(name)), "")
-    return known[-1] if known else "nl" if system.casefold().startswith("nl") else "en"
+    get = environment.get
+    system = get("LC_ALL") or get("LC_MESSAGES") or get("LANG") or ""
+    language = "nl" if system.casefold().startswith("nl") else "en"
+    for place, argument in enumerate(arguments):
+        name, _, value = argument.partition("=")
+        if argument == "--lang" and place + 1 < len(arguments):
+            value = arguments[place + 1]
+        if name == "--lang" and value in LANGUAGES:
+            language = value
+    return language
 
 
 def speak(language: str) -> None:
@@ -113,6 +113,8 @@ class Group(Command, click.Group):
         sections = self.sections or {gettext.gettext("Commands"): self.list_commands(ctx)}
         for heading, names in sections.items():
             with formatter.section(tell(heading)):
-                helps = ((name, self.commands[name].help or "") for name in names)
-                firsts = ((name, text.partition(". ")[0].removesuffix(".")) for name, text in helps)
-                formatter.write_dl(list(firsts))
+                rows = []
+                for name in names:
+                    text = self.commands[name].help or ""
+                    rows.append((name, text.partition(". ")[0].removesuffix(".")))
+                formatter.write_dl(rows)

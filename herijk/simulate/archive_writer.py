@@ -330,7 +330,7 @@ def _list_rows(world: World, season: int) -> list[Row]:
     """Return the rows of a season's list; a column that is empty for every tow is left out."""
     tows = [tow for tow in world.tows if tow.season == season]
     rows = [_list_row(world, tow) for tow in tows]
-    if any(tow.free_thwart or tow.freeboards_m for tow in tows):
+    if any(tow.free_thwart or tow.freeboards_m or tow.salinity_g_kg for tow in tows):
         return [row | _optional_cells(tow) for row, tow in zip(rows, tows, strict=True)]
     return rows
 
@@ -364,11 +364,12 @@ def _list_row(world: World, tow: Tow) -> Row:
 def _optional_cells(tow: Tow) -> Row:
     spelling = find_spelling(tow.season)
     freeboards = zip(FREEBOARD_COLUMNS, tow.freeboards_m or (), strict=False)
-    return (
-        {"lege doft": tow.free_thwart}
-        | dict.fromkeys(FREEBOARD_COLUMNS, "")
-        | {column: spelling.number(height_m, 3) for column, height_m in freeboards}
-    )
+    cells = {"lege doft": tow.free_thwart} | dict.fromkeys(FREEBOARD_COLUMNS, "")
+    for column, height_m in freeboards:
+        cells[column] = spelling.number(height_m, 3)
+    if tow.salinity_g_kg:
+        cells["zoutgehalte [g/kg]"] = spelling.number(tow.salinity_g_kg, 1)
+    return cells
 
 
 def _register_rows(world: World, year: int, curves: Curves) -> list[Row]:

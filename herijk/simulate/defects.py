@@ -40,6 +40,7 @@ class Defects:
     stream_drift_m_s: float = 0.0  # sd of the change in ten minutes
     tide_m_s: float = 0.0  # amplitude of a tidal current that turns during the tow
     water_temperature_c: tuple[float, float] = (15.0, 15.0)  # range, drawn each day
+    salinity_g_kg: float = 0.0
     temperature_missing_share: float = 0.0  # of tows whose list does not give it
     wind_m_s: float = 0.0  # mean true wind speed
     wind_turbulence: float = 0.0  # sd of the wind over its mean

@@ -19,6 +19,10 @@ from herijk.simulate.delft import FROUDE
 GRAVITY_M_S2: Final = 9.81
 AIR_DENSITY_KG_M3: Final = 1.225
 REFERENCE_TEMPERATURE_C: Final = 15.0
+SALT_CONTRACTION: Final = 7.7e-4
+SALT_VISCOSITY: Final = 1.07e-3
+"""Relative change of density and of kinematic viscosity per g/kg of salt, at 15 C and 35 g/kg
+(Millero 1974, The Sea 5)."""
 REFERENCE_FROUDE: Final = 0.28
 """Froude number at which `wave_coefficient` is stated; the middle of rowing speeds."""
 
@@ -86,17 +90,28 @@ def kinematic_viscosity_m2_s(temperature_c: float) -> float:
     return float(1.002e-3 * 10.0**log10_ratio / water_density_kg_m3(temperature_c))
 
 
-def friction_coefficient(speed_m_s: Floats, length_m: float, temperature_c: float) -> Floats:
+def friction_coefficient(
+    speed_m_s: Floats, length_m: float, temperature_c: float, salinity_g_kg: float = 0.0
+) -> Floats:
     """Return CF by the ITTC-57 line, `CF = 0.075 / (log10 Re - 2)^2`."""
-    reynolds = speed_m_s * (length_m / kinematic_viscosity_m2_s(temperature_c))
+    in_fresh_m2_s = kinematic_viscosity_m2_s(temperature_c)
+    viscosity_m2_s = in_fresh_m2_s * (1.0 + SALT_VISCOSITY * salinity_g_kg)
+    reynolds = speed_m_s * (length_m / viscosity_m2_s)
     return np.asarray(0.075 / (np.log10(reynolds) - 2.0) ** 2)
 
 
-def water_cw_kg_m(hull: Hull, speed_m_s: Floats, temperature_c: float) -> Floats:
-    """Return the water resistance over speed squared [kg/m]; any shape, speeds above zero."""
-    density = water_density_kg_m3(temperature_c)
-    cf = friction_coefficient(speed_m_s, hull.waterline_length_m, temperature_c)
-    friction = density / 2 * hull.wetted_surface_m2 * (1.0 + hull.form_factor) * cf
+def water_cw_kg_m(
+    hull: Hull, speed_m_s: Floats, temperature_c: float, salinity_g_kg: float = 0.0
+) -> Floats:
+    """Return the water resistance over speed squared [kg/m]; any shape, speeds above zero.
+
+    A boat of one weight lies higher in salt water, with less wetted surface; its waves stay.
+    """
+    salt_ratio = 1.0 + SALT_CONTRACTION * salinity_g_kg
+    density = water_density_kg_m3(temperature_c) * salt_ratio
+    wetted_m2 = hull.wetted_surface_m2 / np.sqrt(salt_ratio)
+    cf = friction_coefficient(speed_m_s, hull.waterline_length_m, temperature_c, salinity_g_kg)
+    friction = density / 2 * wetted_m2 * (1.0 + hull.form_factor) * cf
     if hull.residuary is None:
         wave = _bow_wave_cw_kg_m(hull, speed_m_s)
     else:
@@ -134,10 +149,15 @@ def still_air_cw_kg_m(hull: Hull, air: AirCoefficients) -> float:
 
 
 def true_cw_kg_m(
-    hull: Hull, speed_m_s: Floats, temperature_c: float, air: AirCoefficients
+    hull: Hull,
+    speed_m_s: Floats,
+    temperature_c: float,
+    air: AirCoefficients,
+    salinity_g_kg: float = 0.0,
 ) -> Floats:
     """Return the coefficient a perfect tow test would find: still water and still air, [kg/m]."""
-    return water_cw_kg_m(hull, speed_m_s, temperature_c) + still_air_cw_kg_m(hull, air)
+    in_water = water_cw_kg_m(hull, speed_m_s, temperature_c, salinity_g_kg)
+    return in_water + still_air_cw_kg_m(hull, air)
 
 
 def air_force_n(

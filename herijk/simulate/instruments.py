@@ -91,7 +91,7 @@ def read_load_cell(
         return np.interp(time_s, run.grid_s, slow)
 
     speed_m_s = interpolate_to_samples(run.speed_m_s)
-    cw = water_cw_kg_m(tow.hull, speed_m_s, tow.water_temperature_c)
+    cw = water_cw_kg_m(tow.hull, speed_m_s, tow.water_temperature_c, tow.salinity_g_kg)
     water_n = cw * speed_m_s**2 * tow.truth.askew_ratio
     air_n = air_force_n(
         tow.hull,

@@ -86,25 +86,30 @@ def print_curve(
         if not tow.second_name or is_out or is_back_of_second_file:
             used.append(_read_run(samples, truth, trimmed=practice.improved))
     log_factor = _calibrate_on_gps(used) if practice.improved else 1.0
-    speed = np.array([log_factor * run.log_m_s.mean() for run in used])
-    gross = np.array([(run.force_n / (log_factor * run.log_m_s) ** 2).mean() for run in used])
+    means = []
+    for run in used:
+        ahead = run.wind_m_s * np.cos(run.angle_rad)
+        abeam = run.wind_m_s * np.sin(run.angle_rad)
+        force = air_force_n(tow.hull, ahead, abeam, AIR_OF_2015)
+        speed_m_s = log_factor * run.log_m_s
+        square = speed_m_s**2
+        means.append((speed_m_s.mean(), (run.force_n / square).mean(), (force / square).mean()))
+    speed, gross, air = np.array(means).T
     highest_b = HIGHEST_B_M_S
     if practice.improved:
-        air = []
-        for run in used:
-            ahead = run.wind_m_s * np.cos(run.angle_rad)
-            abeam = run.wind_m_s * np.sin(run.angle_rad)
-            force = air_force_n(tow.hull, ahead, abeam, AIR_OF_2015)
-            air.append((force / (log_factor * run.log_m_s) ** 2).mean())
         counted = speed <= FASTEST_OF_2015 * tow.declared_speed_m_s
-        cw = (gross - np.array(air))[counted] + still_air_cw_kg_m(tow.hull, AIR_OF_2015)
+        cw = (gross - air)[counted] + still_air_cw_kg_m(tow.hull, AIR_OF_2015)
         speed = speed[counted]
         highest_b = HULL_SPEEDS * 1.25 * float(np.sqrt(tow.boat.waterline_length_m))
     else:
         cw = _search_air_coefficients(speed, gross, used, tow)
     if practice.temperature:  # its formula is secret: what is true takes its place
         at_reference = water_cw_kg_m(tow.hull, speed, REFERENCE_TEMPERATURE_C)
-        cw = cw + at_reference - water_cw_kg_m(tow.hull, speed, tow.water_temperature_c)
+        cw = (
+            cw
+            + at_reference
+            - water_cw_kg_m(tow.hull, speed, tow.water_temperature_c, tow.salinity_g_kg)
+        )
     return _fit(speed, cw, highest_b)
 
 

@@ -128,6 +128,7 @@ class Tow:
     weight_kg: float
     weight_after_kg: float
     water_temperature_c: float
+    salinity_g_kg: float
     listed_temperature_c: float | None
     freeboards_m: tuple[float, float, float] | None
     altered_reported: bool
@@ -294,8 +295,9 @@ def _tow(
     declared = _choose_declared_speed(settings, boat, slot.crew_class, rowers)
     declared = round(declared * _slowness(defects, draw(Component.SLOW)), 2)
 
-    def cw(at_c: float) -> float:
-        return float(true_cw_kg_m(hull, np.array(declared), at_c, settings.air))
+    def cw(at_c: float, salinity_g_kg: float = 0.0) -> float:
+        speed_m_s = np.array(declared)
+        return float(true_cw_kg_m(hull, speed_m_s, at_c, settings.air, salinity_g_kg))
 
     of_day = season_log_factor * _log_change(settings, slot.season, day)
     deviation = float(draw(Component.LOG_OF_TOW).standard_normal())
@@ -314,13 +316,14 @@ def _tow(
         weight_after_kg=weight_kg
         + round(float(draw(Component.SCALES).uniform(0.0, HIGHEST_WEIGHT_GAIN_KG))),
         water_temperature_c=temperature_c,
+        salinity_g_kg=defects.salinity_g_kg,
         listed_temperature_c=temperature_c if listed else None,
         freeboards_m=_freeboards_m(settings, slot.season, boat, weight_kg),
         altered_reported=any(s > previous_season for s in condition.reported_seasons),
         fast_run=bool(draw(Component.FAST_RUN).random() < defects.fast_run_share),
         hull=hull,
         truth=TowTruth(
-            cw_at_tow_temperature_kg_m=cw(temperature_c),
+            cw_at_tow_temperature_kg_m=cw(temperature_c, defects.salinity_g_kg),
             cw_at_15c_kg_m=cw(REFERENCE_TEMPERATURE_C),
             season_log_factor=season_log_factor,
             log_factor_of_day=of_day,

@@ -27,6 +27,7 @@ from pipeline.assessment.currents import CANNOT_BE_TOLD, CHANGED
 from pipeline.assessment.run_measures import summarize_runs
 from pipeline.choice import SAME_SHARE
 from pipeline.crews import STANDARD_CREWS
+from pipeline.hull import BEAM_DRAUGHTS, GRAVITY_M_S2
 from pipeline.quantiles import MAD_TO_SD
 
 MIN_WAYS_SD: Final = 3.0
@@ -42,6 +43,16 @@ HALF_STEP_RATIO: Final = pl.max_horizontal(
 """Change of Cw if readings were truncated to their step and not rounded: half a step, of which that
 of speed counts twice. That of a GPS counts only where it calibrates the tow."""
 
+MAX_DEPTH_FROUDE: Final = 0.5
+"""Speed over the speed of the longest wave of that depth, sqrt(g h), from which a boat feels the
+bottom (inferred: speed trials of ships ask 0.60, by h >= 2.75 v^2/g, ISO 15016:2015)."""
+MIN_DEPTH_DRAUGHTS: Final = 3.0
+"""Least depth in draughts (inferred)."""
+NEEDED_DEPTH_RATIO: Final = pl.max_horizontal(
+    (pl.col("fastest_m_s") / MAX_DEPTH_FROUDE) ** 2 / GRAVITY_M_S2,
+    MIN_DEPTH_DRAUGHTS * pl.col("beam_m") / BEAM_DRAUGHTS,
+) / pl.col("water_depth_m")
+"""Depth at which the fastest run that counts does not feel the bottom, over the depth there was."""
 
 CLEAR_CHANGE: Final = (
     pl.when(current_verdict=CHANGED)
@@ -90,7 +101,9 @@ def assess(
     measured = tows
     for measure in measures:
         measured = measured.join(measure, on="tow_id", how="left", maintain_order="left")
-    measured = measured.with_columns(by_half_a_step=HALF_STEP_RATIO)
+    measured = measured.with_columns(
+        by_half_a_step=HALF_STEP_RATIO, needed_depth_ratio=NEEDED_DEPTH_RATIO
+    )
     return apply_checks(measured, _widen_limit_of_ways(runs), crew_classes)
 
 

@@ -167,6 +167,7 @@ CHECKS: Final = (
     ),
     Check("heavier_after", "weight_after_kg / weight_kg - 1", say("heavier after"), None, 0.02),
     Check("water_differs", "water_off_c", say("water unlike its day's"), None, 3.0, unit="C"),
+    Check("shallow_water", "needed_depth_ratio", say("water too shallow"), None, 1.0),
     Check("boat_list_differs", "off_boat_list", say("differs from the boat list"), None, 0.05),
     Check("weight_changed", "weight_kg_change", say("weight changed"), -0.02, 0.02),
     Check("length_changed", "waterline_length_m_change", say("length changed"), -0.01, 0.01),

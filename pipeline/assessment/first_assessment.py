@@ -55,6 +55,7 @@ JUDGED_BY: Final[dict[str, tuple[Rule, Verdict]]] = {
     "slow_tow": ("plausible", "look"),
     "crew_weight": ("plausible", "look"),
     "water_differs": ("plausible", "look"),
+    "shallow_water": ("plausible", "look"),
     "unlike_other_tows": ("near_earlier_curve", "look"),
     "boat_changed": ("near_earlier_curve", "look"),
     "curve_change_unexplained": ("near_earlier_curve", "look"),

@@ -39,6 +39,7 @@ def summarize_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFra
                 least - pl.col("lowest_target").first(), pl.col("highest_target").first() - most
             ),
             beyond=pl.max_horizontal(least - 1, 1 - most),
+            fastest_m_s=speed.max(),
         )
     )
 

@@ -37,7 +37,7 @@ from pipeline.steps.resistance import (
     RunMeans,
     accelerated_mass_kg,
     run_means,
-    temperature_change_kg_m,
+    water_change_kg_m,
 )
 from pipeline.steps.speed import log_factor
 from pipeline.steps.target import is_above_target
@@ -198,8 +198,8 @@ def select_runs(
 
 
 def correct_temperature(plan: Plan, speed_m_s: FloatArray) -> TemperatureCorrection:
-    """Bring Cw to the reference temperature, where the method asks."""
-    change_kg_m, is_known = temperature_change_kg_m(
+    """Bring Cw to fresh water of the reference temperature, where the method asks."""
+    change_kg_m, is_known = water_change_kg_m(
         plan.tows,
         plan.options.corrects_temperature,
         plan.options.expects_unrecorded,

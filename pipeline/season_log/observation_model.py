@@ -281,7 +281,7 @@ def _list_log_faults(archive: Archive, priors: Priors) -> Iterator[Effect]:
 
 
 def _list_seasons(archive: Archive) -> list[int]:
-    return [int(year) for year in np.unique(archive.season)]
+    return list(map(int, np.unique(archive.season)))
 
 
 def _make_ramp(day: FloatArray, own: BoolArray) -> FloatArray | None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks.run_blocks import SUM_NAMES, RunBlocks, WindowSums
@@ -40,7 +41,7 @@ SCATTER_SUMS: Final = {"log1_cw", "log1_cw2"}
 
 WETTED_SURFACE_RATIO: Final = 3.0
 """Wetted surface / sqrt(displaced volume x waterline length). Stated assumption: the Delft formula
-`(1.97 + 0.171 B/T) (0.65/Cm)^(1/3)` gives it at a beam of six draughts, as sloops have."""
+`(1.97 + 0.171 B/T) (0.65/Cm)^(1/3)` gives it at the beam / draught of sloops (`pipeline.hull`)."""
 
 
 @dataclass(frozen=True)
@@ -196,13 +197,15 @@ def accelerated_mass_kg(tows: Tows) -> FloatArray:
     return (1.0 + ADDED_MASS_RATIO) * np.nan_to_num(tows.get_of_runs("mass_kg"))
 
 
-def temperature_change_kg_m(
+def water_change_kg_m(
     tows: Tows, corrected: BoolArray, expected: BoolArray, speed_m_s: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Return the change of Cw to the reference temperature: friction there less that as towed.
+    """Return the change of Cw to fresh water of 15 C: friction there less that as towed.
 
     Friction by the ITTC-57 line, without form factor, on the wetted surface of
-    `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
+    `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public). Salt changes
+    its density, its viscosity and how deep the boat lies. The other resistance is a share of the
+    weight of the boat (Gerritsma, Onnink & Versluis 1981), and stays (method-details, 6).
 
     Args:
         corrected: whether the method asks it, shape (tows,).
@@ -210,27 +213,35 @@ def temperature_change_kg_m(
         speed_m_s: true speed of each run, shape (runs,).
 
     Returns:
-        Change of Cw, shape (runs,), kg/m, 0 without a temperature, or where no tow of the archive
-        has a weight; and for which tows the temperature was recorded and used, shape (tows,).
+        Change of Cw, shape (runs,), kg/m, 0 where no tow of the archive has a weight; and for which
+        tows the temperature was recorded and used, shape (tows,). Water whose temperature is not
+        known is taken to have the reference temperature, and no salt where nobody recorded it.
     """
     recorded_c = tows.get_of_tows("water_temperature_c")
     mass_kg = tows.get_of_tows("mass_kg")
     is_recorded = np.isfinite(recorded_c) & np.isfinite(mass_kg)
     day_c = np.where(expected, tows.get_of_tows("expected_water_c"), np.nan)
     temperature_c = np.where(is_recorded, recorded_c, day_c)
-    has_change = corrected & np.isfinite(temperature_c) & np.isfinite(mass_kg)
-    celsius = np.where(has_change, temperature_c, REFERENCE_WATER_C)
+    has_change = corrected & np.isfinite(mass_kg)
+    is_known = has_change & np.isfinite(temperature_c)
+    celsius = np.where(is_known, temperature_c, REFERENCE_WATER_C)[tows.tow]
+    listed_salinity = np.nan_to_num(tows.get_of_tows("salinity_g_kg"))
+    salinity_g_kg = np.where(has_change, listed_salinity, 0.0)[tows.tow]
+    mass = np.where(has_change, mass_kg, 0.0)[tows.tow]
     length = tows.get_of_runs("waterline_length_m")
-    surface = wetted_surface_m2(np.where(has_change, mass_kg, 0.0)[tows.tow], length)
     speed = _or_one(speed_m_s)
-    at_reference = friction_cw_kg_m(speed, length, surface, REFERENCE_WATER_C)
-    as_towed = friction_cw_kg_m(speed, length, surface, celsius[tows.tow])
+    in_fresh = wetted_surface_m2(mass, length)
+    in_salt = wetted_surface_m2(mass, length, salinity_g_kg)
+    at_reference = friction_cw_kg_m(speed, length, in_fresh, REFERENCE_WATER_C)
+    as_towed = friction_cw_kg_m(speed, length, in_salt, celsius, salinity_g_kg)
     return at_reference - as_towed, is_recorded
 
 
-def wetted_surface_m2(mass_kg: FloatArray, waterline_length_m: FloatArray) -> FloatArray:
-    """Return the wetted surface c sqrt(V L) [m2] of a boat with its crew, V in fresh water."""
-    volume_m3 = mass_kg / water_density_kg_m3(15.0)
+def wetted_surface_m2(
+    mass_kg: FloatArray, waterline_length_m: FloatArray, salinity_g_kg: ArrayLike = 0.0
+) -> FloatArray:
+    """Return the wetted surface c sqrt(V L) [m2] of a boat with its crew, V in water of 15 C."""
+    volume_m3 = mass_kg / water_density_kg_m3(15.0, salinity_g_kg)
     return np.asarray(WETTED_SURFACE_RATIO * np.sqrt(volume_m3 * waterline_length_m))
 
 

@@ -65,6 +65,8 @@ class TowFacts(dy.Schema):
     weight_after_kg = column.boat_weight("the same, after", nullable=True)
     crew_weight_kg = column.optional("crew and ballast on board", min=0, max=6_000)
     water_temperature_c = column.optional("water temperature", min=0, max=35)
+    salinity_g_kg = column.optional("salt in the water; empty counts as fresh", min=0, max=42)
+    water_depth_m = column.optional("depth of the water", min=0.2, max=500)
     speed_correction_ratio = column.optional(
         "speed correction entered by hand, 0.06 for 6 %", min=-0.5, max=0.5
     )

@@ -24,12 +24,14 @@ _TITLES_LIKE_NAMES: Final = (
     say("Mean"), say("Median"), say("Method"), say("Method hash"), say("n"), say("Name"),
     say("New winner"), say("Number"), say("Observed"), say("Old winner"), say("Outcome"),
     say("Part"), say("Published on"), say("Quantity"), say("Race"), say("Ratio"), say("Rows"),
-    say("Run"), say("Runs set aside"), say("Runs used"), say("Seal"), say("Season"),
+    say("Run"), say("Runs set aside"), say("Runs used"), say("Salinity [g/kg]"), say("Seal"),
+    say("Season"),
     say("Season before"), say("Second"), say("Severity"), say("Shared B [m/s]"), say("Size"),
     say("Slope"), say("Source"), say("Speed"), say("Speed factor"), say("Standard speed [m/s]"),
     say("Status"), say("Step"), say("Study"), say("Table"), say("Title"), say("Total"), say("Tows"),
     say("Unit"), say("Valid from"), say("Valid until"), say("Value"), say("Verdict"),
-    say("Weight [kg]"), say("What"), say("Where"), say("Wind [m/s]"), say("Within"),
+    say("Water depth [m]"), say("Water temperature [°C]"), say("Weight [kg]"), say("What"),
+    say("Where"), say("Wind [m/s]"), say("Within"),
 )  # fmt: skip
 """Titles of columns whose name is the same words, and unit, with underscores."""
 
@@ -267,6 +269,7 @@ class NumberForm(NamedTuple):
 _FORMS_BY_ENDING: Final = {
     "_kg_m": NumberForm("kg/m", 2),
     "_m_s": NumberForm("m/s", 2),
+    "_g_kg": NumberForm("g/kg", 1),
     "_kg": NumberForm("kg", 0),
     "_m": NumberForm("m", 2),
     "_w": NumberForm("W", 1),

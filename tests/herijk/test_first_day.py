@@ -36,6 +36,14 @@ def test_a_new_archive_is_checked_and_rebuilt_without_an_error(herijk, tmp_path,
     assert "no tow has samples yet" in json.loads(out)["reason"]
 
 
+def test_a_mistyped_archive_leaves_nothing_behind(herijk, tmp_path):
+    archive, data = tmp_path / "archeif", tmp_path / "data"
+    status, _, said = herijk("rebuild", "--archive", archive, "--data", data)
+    assert status == 1
+    assert "There is no archive" in said
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_lists_without_a_tow_are_no_error(herijk, tmp_path):
     archive = tmp_path / "archive"
     herijk("init", archive)

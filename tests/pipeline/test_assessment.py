@@ -92,6 +92,7 @@ def _tow(boat: int, season: int) -> dict[str, Any]:
         "unusual": [],
         "lamp_ratio": 0.1,
         "water_off_c": 0.2,
+        "water_depth_m": 6.0,
         "load_cell_ratio": 1.002,
     }
 
@@ -251,6 +252,10 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "slow_tow": ("curves", SUBJECT, {"power_w": 59.0}, 59, 60, {"power_outside_range"}),
     "crew_weight": ("tows", SUBJECT, {"crew_weight_kg": 500.0}, 62.5, 81, set()),
     "water_differs": ("tows", SUBJECT, {"water_off_c": 20.4}, 20.4, 3.0, set()),
+    "shallow_water": (
+        "tows", SUBJECT, {"water_depth_m": 2.5}, (1.1 * 1.01 * V0 / 0.5) ** 2 / 9.81 / 2.5, 1.0,
+        set(),
+    ),
     "weight_not_recorded": ("tows", SUBJECT, {"crew_weight_kg": None}, 1, 0, set()),
     "heavier_after": ("tows", SUBJECT, {"weight_after_kg": 1030.0}, 1030 / 1005 - 1, 0.02, set()),
     "boat_list_differs": ("tows", LATER, {"listed_length_m": 9.0}, 1 / 9, 0.05, set()),

@@ -113,6 +113,15 @@ def test_temperature(clean, water_c):
     assert corrected.max() < 0.01
 
 
+def test_salt_water(clean):
+    """Friction grows by 2 % in the North Sea: heavier and tougher water, on less wetted surface."""
+    sea = Defects(salinity_g_kg=34.0)
+    without = cw_of(sea) / clean - 1.0
+    assert 0.008 < without.min() < without.max() < 0.02
+    corrected = error(cw_of(sea, temperature='{ rule = "ittc57" }'), clean)
+    assert corrected.max() < 0.25 * without.max()
+
+
 def cold_without(column: str, tows: int) -> tuple[pl.DataFrame, pl.DataFrame, Measured]:
     """A world in cold water, its tows as recorded, and with a column lost in the first few."""
     cold = measure(world(Defects(water_temperature_c=(4.0, 4.0))))

@@ -59,6 +59,7 @@ UNITS: Final[Mapping[str, Mapping[str, Scale]]] = {
     },
     "mass": {"kg": SI, "g": Scale(1, 1000), "t": Scale(1000), "lb": Scale(0.45359237)},
     "temperature": {"C": SI, "°C": SI},
+    "salinity": {"g/kg": SI, "‰": SI, "ppt": SI, "psu": SI, "%": Scale(10)},
     "ratio": {"%": Scale(1, 100)},
     "rate": {"Hz": SI, "kHz": Scale(1000)},
     "power": {"W": SI, "kW": Scale(1000)},
@@ -153,7 +154,7 @@ def find_unit(dimension: str, unit: str) -> Scale | None:
 def fold(text: str) -> str:
     """Return a header for comparing: its letters and digits, without case and accents."""
     plain = unicodedata.normalize("NFKD", text).casefold()
-    return "".join(letter for letter in plain if letter.isalnum())
+    return "".join(filter(str.isalnum, plain))
 
 
 @lru_cache(100_000)
@@ -318,7 +319,7 @@ def find_columns(
     if missing:
         said = say(
             "Not found in the header: {names}. Found: {found}.",
-            names=", ".join(f"'{column.named}'" for column in missing),
+            names=quote_names(column.named for column in missing),
             found=quote_names(header[:30]),
         )
         problems.append(_Problem("missing_column", said, [f"columns.{c.key}" for c in missing]))
@@ -329,7 +330,7 @@ def find_columns(
     for problem in problems[1:]:
         said = say("{} {}", said, problem.said)
         keys += problem.keys
-    lines = [ask(key) for key in dict.fromkeys(keys)] if ask else []
+    lines = list(map(ask, dict.fromkeys(keys))) if ask else []
     raise DefectiveHeaderError(problems[0].reason_code, said, line, lines + list(also_ask))
 
 

@@ -214,22 +214,26 @@ def _find_idle_settings(profiles: Profiles, listed: pl.DataFrame) -> list[Fault]
     seasons = set(listed["season"])
     tows = set(listed["tow_id"])
 
-    def has_season(bounds: tuple[int, int]) -> bool:
-        return any(bounds[0] <= season <= bounds[1] for season in seasons)
-
-    idle_days = [one.date for one in profiles.set_aside if one.date not in days]
-    idle: list[tuple[str, object]] = [("set_aside", day) for day in idle_days]
-    idle_days = [one.date for one in profiles.log_replaced if one.date.year not in seasons]
-    idle += [("log_replaced", day) for day in idle_days]
-    idle_seasons = [one.seasons for one in profiles.profile if not has_season(one.seasons)]
-    idle += [("profile", bounds) for bounds in idle_seasons]
-    for plan in profiles.plan:
-        idle += [("plan", tow_id) for tow_id in plan.tows if tow_id not in tows]
-        if plan.seasons and not has_season(plan.seasons):
-            idle.append(("plan", plan.seasons))
-    text = say("[[{table}]] is for {what}, and no tow list has that: is it mistyped?")
     faults = []
-    for table, what in idle:
-        said = say(text, table=table, what=str(what))
-        faults.append(Fault(path=PROFILE_FILE, reason_code="idle_setting", message=said))
+
+    def add(table: str, what: object, *, is_idle: bool) -> None:
+        if is_idle:
+            text = say("[[{table}]] is for {what}, and no tow list has that: is it mistyped?")
+            said = say(text, table=table, what=str(what))
+            faults.append(Fault(path=PROFILE_FILE, reason_code="idle_setting", message=said))
+
+    def has_season(bounds: tuple[int, int]) -> bool:
+        return not seasons.isdisjoint(range(bounds[0], bounds[1] + 1))
+
+    for one in profiles.set_aside:
+        add("set_aside", one.date, is_idle=one.date not in days)
+    for replaced in profiles.log_replaced:
+        add("log_replaced", replaced.date, is_idle=replaced.date.year not in seasons)
+    for table in profiles.profile:
+        add("profile", table.seasons, is_idle=not has_season(table.seasons))
+    for plan in profiles.plan:
+        for tow_id in plan.tows:
+            add("plan", tow_id, is_idle=tow_id not in tows)
+        if plan.seasons:
+            add("plan", plan.seasons, is_idle=not has_season(plan.seasons))
     return faults

@@ -136,6 +136,8 @@ _DAY_OF_TOW: Final = (
     _mass("weight_after_kg", "gewicht na"),
     _mass("crew_weight_kg", "bemanning"),
     Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
+    Column("salinity_g_kg", "zoutgehalte", "salinity", "g/kg", required=False),
+    _length("water_depth_m", "waterdiepte"),
     Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
     Column("use_runs", "gebruik runs", required=False),
     Column("altered", "verbouwd", required=False),
@@ -156,7 +158,8 @@ TOWS: Final = ListKind(
     spare=frozenset(
         {
             "waterline_length_m", "beam_m", "bow_height_m", "weight_kg",
-            "weight_after_kg", "crew_weight_kg", "water_temperature_c",
+            "weight_after_kg", "crew_weight_kg", "water_temperature_c", "salinity_g_kg",
+            "water_depth_m",
             "freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m",
         }
     ),

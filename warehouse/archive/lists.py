@@ -289,7 +289,7 @@ def _check_columns(
         )
         free = ", ".join(column.header for column in columns if column.key not in places) or "-"
         said = say(text, names=quote_names(unknown), free=free)
-        ask = [_ask_header(header) for header in unknown]
+        ask = list(map(_ask_header, unknown))
         raise DefectiveHeaderError("unknown_column", said, table.line, ask)
     for key, place in places.items():
         is_filled = any(row[place.index] for _, row, _ in table.rows if place.index < len(row))

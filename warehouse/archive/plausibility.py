@@ -331,8 +331,7 @@ def _check_exchanged(judgement: Judgement, intended_m_s: float) -> None:
     runs = judgement.runs
     typical = {}
     for key in runs[0].channels:
-        of_runs = [run.typical(key) for run in runs]
-        typical[key] = np.median(of_runs, axis=0)
+        typical[key] = np.median([run.typical(key) for run in runs], axis=0)
     wrong = _find_implausible(typical, intended_m_s)
     for one, other in combinations(typical, 2):
         exchanged = typical | {one: typical[other], other: typical[one]}

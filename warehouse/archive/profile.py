@@ -132,7 +132,7 @@ def _parse_directions(value: object) -> object:
     """Read `["out", "back"]` as `OUT` and `BACK`."""
     if not isinstance(value, list) or not set(map(str, value)) <= set(_WAYS):
         raise ValueError('directions are a list of "out" and "back"')
-    return [_WAYS[way] for way in value]
+    return list(map(_WAYS.__getitem__, value))
 
 
 class _Strict(BaseModel):

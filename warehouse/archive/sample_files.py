@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -171,14 +172,15 @@ def _find_known(
 def _add_other_answers(error: DefectiveHeaderError, profile: SeasonProfile) -> DefectiveHeaderError:
     """Return the error about a header with the answers that are not the name of a column."""
     said, ask = error.message, list(error.ask)
-    if any(".run = " in line for line in ask):
+    asked = "\n".join(ask)
+    if ".run = " in asked:
         text = say(
             '{header} Where no column says which run a row is: runs = "file" if each run has its '
             'file, or runs = "windows" if begin and end of each run are in the list vensters.'
         )
         said = say(text, header=said)
         ask.append(profile.ask("runs"))
-    if any("columns.log2 = " in line or "columns.wind_speed = " in line for line in ask):
+    if "columns.log2 = " in asked or "columns.wind_speed = " in asked:
         said = say("{header} What was not on board goes under absent.", header=said)
         ask.append(profile.ask("absent", '["?"]'))
     return DefectiveHeaderError(error.reason_code, said, error.line, ask)
@@ -551,7 +553,7 @@ def _open_tdms(path: Path, header_only: bool) -> list[Any]:
     try:
         file = TdmsFile.read_metadata(path) if header_only else TdmsFile.read(path)
         groups = [group for group in file.groups() if group.channels()]
-        total = sum(len(channel) for group in groups for channel in group.channels())
+        total = sum(map(len, chain.from_iterable(group.channels() for group in groups)))
     except Exception as error:  # a damaged file makes the library raise almost anything
         raise _damaged_error(path, "TDMS", error) from error
     if total * 8 > MAX_BYTES:
@@ -582,16 +584,16 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
         missing = [name for name in profile.groups if name not in names]
         if missing:
             text = say("There is no group '{name}'; the groups with channels are {names}.")
-            said = say(text, name=missing[0], names=", ".join(f"'{name}'" for name in names))
+            said = say(text, name=missing[0], names=quote_names(names))
             raise DefectiveHeaderError(
                 "missing_column", said, None, (profile.ask("groups", '["?"]'),)
             )
         by_name = dict(zip(names, with_channels, strict=True))
-        return [(run, by_name[name]) for run, name in enumerate(profile.groups, start=1)]
+        return list(enumerate(map(by_name.__getitem__, profile.groups), start=1))
     if len(with_channels) == 1 and has_run_channel:
         return [(None, with_channels[0])]
     if not with_channels:
-        return [(1, group) for group in groups[:1]]  # what is missing is told of the first
+        return list(enumerate(groups[:1], start=1))  # what is missing is told of the first
     numbers = []
     for name in names:
         digits = re.findall(r"[0-9]+", name)
@@ -600,7 +602,7 @@ def _assign_groups(groups: Sequence[Any], profile: SeasonProfile) -> list[tuple[
         text = say("The groups are {names}, and it is not clear which run each of them is.")
         said = say(text, names=quote_names(names))
         raise DefectiveHeaderError("unknown_run", said, None, (profile.ask("groups", '["?"]'),))
-    return [(run, group) for run, group in enumerate(with_channels, start=1)]
+    return list(enumerate(with_channels, start=1))
 
 
 def _read_group(

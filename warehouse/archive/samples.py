@@ -95,7 +95,7 @@ def read_tow_samples(
     ):
         paths = tow[name].split(PARTS) if tow[name] else []
         runs = tow.get(numbers)
-        run_of = [int(run) for run in runs.split(",")] if runs else [None] * len(paths)
+        run_of = list(map(int, runs.split(","))) if runs else [None] * len(paths)
         own: Windows = {}
         for run, window in windows.items():
             if offset < run <= offset + MOST_RUNS:

@@ -179,7 +179,7 @@ def name_run_files(cell: str, profile: SeasonProfile, plan: Plan) -> dict[int, s
 
 def _add_run_files(rows: Rows, samples: pl.DataFrame, profiles: Profiles) -> pl.DataFrame:
     """Return the samples with an entry for each tow that has a file for each run."""
-    known = {(row["season"], row["name"]): row for row in samples.iter_rows(named=True)}
+    known = samples.rows_by_key(("season", "name"), named=True, unique=True, include_key=True)
     together: dict[tuple[int, str], dict[str, Any]] = {}
     facts = rows.frame.select("tow_id", "season", "file", "second_file")
     for tow_id, season, first_cell, second_cell in facts.iter_rows():

@@ -115,7 +115,7 @@ def _compute_ladder(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     if start is None:
         printed_in = old.manifest.printed_in or old.manifest.valid_from.year
         known = KnownMethods.from_store(store)
-        start = find_method_in_force(printed_in, [known.get(name) for name in known.names])
+        start = find_method_in_force(printed_in, list(map(known.get, known.names)))
     if tows.is_empty() or start is None:
         return no_ladder
     blocks = stack_blocks(intake.read_all_blocks(store), runs)

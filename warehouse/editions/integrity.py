@@ -96,7 +96,8 @@ def _known_editions(store: Store) -> dict[str, Row]:
     """Return the facts that the last rebuild noted of each edition, by its name."""
     if store.read_fingerprint("editions") is None:
         return {}
-    return {row["edition"]: row for row in store.read("editions").iter_rows(named=True)}
+    editions = store.read("editions")
+    return editions.rows_by_key("edition", named=True, unique=True, include_key=True)
 
 
 def check_manifest(

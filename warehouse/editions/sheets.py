@@ -168,18 +168,16 @@ def shows_the_same(workbook: bytes, frame: pl.DataFrame, fields: Sequence[Field]
     if book.sheetnames not in ([SHEET], [SHEET, OLDER_SECOND_SHEET]):
         return False
     sheet = book[SHEET]
-    shapes = list(sheet.row_dimensions.values()) + list(sheet.column_dimensions.values())
-    sizes = [getattr(shape, "height", None) for shape in shapes]
-    sizes += [getattr(shape, "width", None) for shape in shapes]
-    is_hidden = any(shape.hidden for shape in shapes) or 0 in sizes
-    if is_hidden or sheet.sheet_state != "visible" or sheet.conditional_formatting:
+    for shape in list(sheet.row_dimensions.values()) + list(sheet.column_dimensions.values()):
+        size = (getattr(shape, "height", None), getattr(shape, "width", None))
+        if shape.hidden or 0 in size:
+            return False
+    if sheet.sheet_state != "visible" or sheet.conditional_formatting:
         return False
     cells = _tabulate_cells(frame, fields)
-    formats = [_choose_number_format(field) for field in fields]
+    formats = list(map(_choose_number_format, fields))
     expected: list[list[object]] = [list(cells.columns)]
-    for row in cells.iter_rows():
-        read = [_read_cell(value) for value in row]
-        expected.append(read)
+    expected += [list(map(_read_cell, row)) for row in cells.iter_rows()]
     shown = []
     is_formatted = True
     for place, row in enumerate(sheet.iter_rows()):

@@ -32,7 +32,7 @@ from pipeline.method.definition import Method
 from pipeline.recompute.facts import add_boats
 from pipeline.recompute.recompute import recompute
 from pipeline.tables.keys import LINE
-from pipeline.tables.row import Row
+from pipeline.tables.row import Row, pick_columns
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.archive_tables import read_archive
 from warehouse.intake import seasons as intake
@@ -139,7 +139,7 @@ def _assess_tow(store: Store, tow_id: str, method: str) -> Assessment:
     others = _find_cw_at_speed(
         curves.join(of_tows, on="tow_id", maintain_order="left"), tow["declared_speed_m_s"]
     ).sort("tow_date", "tow_id")
-    own_before = _get_newest(others.filter(is_earlier, **{name: tow[name] for name in LINE}))
+    own_before = _get_newest(others.filter(is_earlier, **pick_columns(tow, LINE)))
     boat_before = _get_newest(
         dated.filter(is_earlier, fsn_no=tow["fsn_no"]).sort("tow_date", "tow_id")
     )
@@ -228,20 +228,19 @@ def propose_use_of_runs(assessment: pl.DataFrame, planned: pl.DataFrame) -> list
     if extra.is_empty():
         return []
     redo = get_runs_to_redo(assessment) or []
-    candidates = {row["runs"][0]: row["instead_of"] for row in extra.iter_rows(named=True)}
-    ways: list[dict[int, int]] = []
+    first_runs = extra["runs"].list.first()
+    candidates = dict(zip(first_runs, extra["instead_of"].to_list(), strict=True))
     if len(candidates) == 1:
         run, alike = next(iter(candidates.items()))
         wrong = [one for one in alike if one in redo]
-        ways = [{one: run} for one in (wrong if len(wrong) == 1 else alike)]
-    else:
-        way: dict[int, int] = {}
-        for run, alike in candidates.items():
-            free = [one for one in alike if one not in way]
-            if free:
-                way[free[0]] = run
-        ways = [way]
-    return [_write_use_of_runs(known, way) for way in ways]
+        replaceable = wrong if len(wrong) == 1 else alike
+        return [_write_use_of_runs(known, {one: run}) for one in replaceable]
+    way: dict[int, int] = {}
+    for run, alike in candidates.items():
+        free = [one for one in alike if one not in way]
+        if free:
+            way[free[0]] = run
+    return [_write_use_of_runs(known, way)]
 
 
 def _write_use_of_runs(known: pl.DataFrame, replaced_by: Mapping[int, int]) -> Row:
@@ -251,12 +250,14 @@ def _write_use_of_runs(known: pl.DataFrame, replaced_by: Mapping[int, int]) -> R
     selected = [replaced_by.get(run, run) for run in known.filter("selected")["run"]]
     for run, other in replaced_by.items():
         targets[other], directions[other] = targets[run], directions[run]
-    every = range(1, max(targets) + 1)
-    ways = ['"out"' if directions.get(run, OUT) == OUT else '"back"' for run in every]
+    speeds, ways = [], []
+    for run in range(1, max(targets) + 1):
+        speeds.append(f"{targets.get(run, 1.0):g}")
+        ways.append('"out"' if directions.get(run, OUT) == OUT else '"back"')
     plan = [
         "[[plan]]",
         f'tows = ["{known["tow_id"][0]}"]',
-        f"targets = [{', '.join(f'{targets.get(run, 1.0):g}' for run in every)}]",
+        f"targets = [{', '.join(speeds)}]",
         f"directions = [{', '.join(ways)}]",
     ]
     seconds = known["planned_s"][0]

@@ -12,7 +12,7 @@ from pipeline.messages import say
 from pipeline.races.power import find_line_curves
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.register import LINE
-from pipeline.tables.row import Row
+from pipeline.tables.row import Row, pick_columns
 from warehouse.queries.answers import add_peers, log_known
 from warehouse.queries.views import DRAFT, Views
 from warehouse.store.database import make_unknown_edition_error
@@ -57,7 +57,7 @@ def read_certificate_lines(views: Views, edition: str, fsn_no: str | None) -> li
     for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts():
         others = []
         for other in crews:
-            is_same_line = all(other[name] == line[name] for name in LINE)
+            is_same_line = pick_columns(other, LINE) == pick_columns(line, LINE)
             if other["fsn_no"] == line["fsn_no"] and not is_same_line:
                 others.append(other)
         added = {
@@ -98,7 +98,7 @@ def compute_line_curve(line: Row, speeds: Sequence[float]) -> pl.DataFrame:
         speeds: where, as parts of the declared speed.
     """
     speed = np.array(speeds) * line["declared_speed_m_s"]
-    a, s = find_line_curves(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))
+    a, s = find_line_curves(pl.DataFrame([pick_columns(line, CURVE)], schema=CURVE))
     resistance = cw(a, s, speed)
     power = power_per_rower_w(resistance, speed, np.full(speed.shape, line["rowers"]))
     return pl.DataFrame({"speed_m_s": speed, "cw_kg_m": resistance, "power_w": power})

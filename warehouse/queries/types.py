@@ -36,7 +36,7 @@ def find_boat(views: Views, wanted: str) -> str | None:
         MissingKnowledgeError: several boats answer to the name, and no type.
     """
     boats, types = views.table("boats"), _read_type_names(views)
-    is_whole_type = normalize_name(wanted) in {normalize_name(name) for name in types}
+    is_whole_type = normalize_name(wanted) in set(map(normalize_name, types))
     begins_type = bool(match_names(wanted, types))
     is_whole_boat = bool(find_boats(boats, wanted, whole=True))
     if is_whole_type or (begins_type and not is_whole_boat) or not find_boats(boats, wanted):

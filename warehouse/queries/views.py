@@ -141,8 +141,8 @@ ORDER BY method, number DESC, code
 """,
     # Curves with the day, name and what was on board.
     "curves": """
-SELECT c.*, t.tow_date, t.weight_kg, t.water_temperature_c, t.altered, b.name, b.boat_type,
-       m.interval
+SELECT c.*, t.tow_date, t.weight_kg, t.water_temperature_c, t.salinity_g_kg, t.water_depth_m,
+       t.altered, b.name, b.boat_type, m.interval
 FROM curves AS c JOIN tows AS t USING (tow_id) JOIN methods AS m USING (method)
 LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
 ORDER BY c.fsn_no, t.tow_date, c.tow_id, c.method
