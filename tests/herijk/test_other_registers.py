@@ -74,6 +74,9 @@ def check_register(data):
     days = dict(tows.select("tow_id", "tow_date").rows())
     for tow_id, until in lines.select("tow_id", "valid_until").rows():
         assert until == days[tow_id].replace(year=days[tow_id].year + 3)
+    line = lines.filter(fsn_no="CR3").row(0, named=True)
+    until = f"{line['valid_until'].day} {line['valid_until']:%B %Y}"
+    assert f"Solan (CR3) has Cw {line['cw_kg_m']:.2f} kg/m, valid until {until}." in read(PAGE)
     before = data.table("register").filter(edition="concept-league-2024")
     assert set(before["valid_until"]) == {dt.date(2028, 12, 31), dt.date(2029, 12, 31)}
     _, _, towed = league.make_world()
@@ -95,6 +98,7 @@ def check_races(data):
     men = in_order.filter(crew_class="M")
     assert men["fsn_no"].to_list() == ["CR3", "CR21"]
     assert men["rowing_time_s"][0] > men["rowing_time_s"][1]
+    assert men["old_rank"].to_list() == [2, 1]
     fastest = pl.col("new_corrected_time_s") == pl.col("rowing_time_s")
     assert races.filter(fastest).select("crew_class").n_unique() == 3  # one keeps its time
 
