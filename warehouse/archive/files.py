@@ -21,7 +21,7 @@ from pipeline.messages import say
 from warehouse.archive.columns import fold_word
 from warehouse.archive.faults import DefectiveFileError
 from warehouse.archive.kinds import LIST_KINDS, ListKind
-from warehouse.archive.profile import PROFILE_FILE, Profiles
+from warehouse.archive.profile import PROFILE_FILE, Profiles, make_pattern
 from warehouse.store.files import file_sha256, write_beside
 
 SAMPLES: Final = "samples"
@@ -71,12 +71,6 @@ class ArchiveFile:
     kind: ListKind | str
     season: int
     inside: bool
-
-
-def make_pattern(place: str) -> re.Pattern[str]:
-    """Return the pattern of a folder or name; its group `year` is the season, where it has one."""
-    text = re.escape(place).replace(r"\{name\}", ".+").replace(r"\{year\}", "(?P<year>[0-9]{4})", 1)
-    return re.compile(text, re.IGNORECASE)
 
 
 def list_files(root: Path, profiles: Profiles) -> list[ArchiveFile]:

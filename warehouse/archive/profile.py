@@ -1,6 +1,8 @@
 """`archief.toml`: what differs in this archive, and the plan of its runs."""
 
 import datetime as dt
+import itertools
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -32,7 +34,7 @@ from pipeline.messages import say
 from pipeline.tables.column import CREW_CLASS
 from pipeline.toml_text import decode_toml, describe_problem, parse_toml
 from warehouse.archive.columns import UNITS, Column, find_unit, fold, fold_word, split_header
-from warehouse.archive.kinds import SAMPLES_PLACE, FileKind, ListKind
+from warehouse.archive.kinds import LIST_KINDS, SAMPLES_PLACE, FileKind, ListKind
 
 PROFILE_FILE: Final = "archief.toml"
 SAMPLE_COLUMNS: Final = (
@@ -135,6 +137,12 @@ def _parse_directions(value: object) -> object:
     return list(map(_WAYS.__getitem__, value))
 
 
+def _refuse_descending_range(ends: tuple[float, float]) -> tuple[float, float]:
+    if ends[0] >= ends[1]:
+        raise ValueError("a range is its lower end, then its upper end")
+    return ends
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
@@ -147,8 +155,16 @@ _Directions = Annotated[
     Field(min_length=FEWEST_RUNS, max_length=MOST_RUNS),
 ]
 _Number = Annotated[float, Field(gt=0, strict=False)]
-_Range = Annotated[tuple[_Number, _Number], Field(strict=False)]
+_Range = Annotated[
+    tuple[_Number, _Number], Field(strict=False), AfterValidator(_refuse_descending_range)
+]
 _Folded = Annotated[list[str], AfterValidator(lambda names: [fold(name) for name in names])]
+
+
+def make_pattern(place: str) -> re.Pattern[str]:
+    """Return the pattern of a folder or name; its group `year` is the season, where it has one."""
+    text = re.escape(place).replace(r"\{name\}", ".+").replace(r"\{year\}", "(?P<year>[0-9]{4})", 1)
+    return re.compile(text, re.IGNORECASE)
 
 
 class SetAside(_Strict):
@@ -362,6 +378,15 @@ class Profiles(_Strict):
             if ("{year}" in place) == (kind in OF_NO_SEASON):
                 need = "must not" if kind in OF_NO_SEASON else "must"
                 raise ValueError(f"files.{kind}: '{place}' {need} have {{year}} in it")
+        for one, other in itertools.permutations(LIST_KINDS, 2):
+            place = self.find_place(other)
+            file = place.replace("{year}", "2000").replace("{name}", "name")
+            if make_pattern(self.find_place(one)).fullmatch(file):
+                raise ValueError(f"files: '{place}' can be {one.name} and {other.name}")
+        return self
+
+    @model_validator(mode="after")
+    def _classes_differ(self) -> Self:
         codes = [crew.code for crew in self.crew]
         if len(codes) > len(set(codes)):
             raise ValueError("two [[crew]] have one code")

@@ -115,9 +115,14 @@ def test_kinds_that_are_not_renamed_keep_their_place(other: Archive) -> None:
         ('[files]\nboats = "boats_{year}/b"', "must not have {year} in it"),
         ('[files]\nsamples = "a/{year}"', "'a/{year}' is not a folder"),
         ('[files]\nraces = "races"', "'races' is not a folder and a name"),
+        (
+            '[files]\ntows = "lists/tows_{year}"\nraces = "lists/{name}_{year}"',
+            "files: 'lists/tows_{year}' can be races and tows",
+        ),
         ('[files]\nweather = "w/{year}"', "files.weather"),
         (CREWS.replace("U23", "M"), "two [[crew]] have one code"),
         (CREWS.replace("U23", "under"), "crew.1.code"),
+        (CREWS.replace("[55, 85]", "[85, 55]"), "crew.0.power_w"),
         ('handicap = "portsmouth"', "'handicap'"),
     ],
 )
