@@ -11,15 +11,14 @@ from assets.rules import read_methods
 from pipeline.assessment.acceptance import judge_acceptances
 from pipeline.blocks.run_blocks import stack_blocks
 from pipeline.recompute.facts import add_hand_windows
-from pipeline.recompute.run_cache import RunCache
 from pipeline.studies import summaries
 from pipeline.tables.schemas import conform
 from warehouse.derive.archive_tables import add_first_seen, read_earlier
 from warehouse.derive.recomputing import METHOD_TABLES, ArchiveRuns, recompute_archive
-from warehouse.derive.studies import study_tables
+from warehouse.derive.studies import study_methods
 from warehouse.store.unforeseen import note
 
-STUDIES: Final = ("correction_steps", "option_effects", "option_curves")
+STUDIES: Final = ("correction_steps", "vote_curves")
 
 
 @dg.multi_asset(
@@ -91,17 +90,9 @@ def studies(
     blocks: pl.DataFrame,
     tow_instruments: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
-    """Return the ladder from the first method to each other, and the studies of its options."""
+    """Return the ladder from the first method to each other, and the parts of the vote."""
     runs = stack_blocks(blocks, add_hand_windows(tow_runs, hand_windows))
-    cache = RunCache()
-    applied = read_methods(folders, methods)
-    of_methods = [
-        study_tables(method, applied[0], tows, runs, tow_instruments, cache) for method in applied
-    ]
-    tables = {}
-    for name in STUDIES:
-        tables[name] = pl.concat([made[name] for made in of_methods], how="diagonal")
-    return tables
+    return study_methods(read_methods(folders, methods), tows, runs, tow_instruments)
 
 
 @dg.asset

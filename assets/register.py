@@ -7,6 +7,7 @@ from assets.lake import Folders, incremental, outs
 from assets.rules import read_methods
 from pipeline.register import years
 from warehouse.derive import registers as derive
+from warehouse.derive.votes import vote_tables
 
 
 @dg.multi_asset(
@@ -67,6 +68,34 @@ def race_changes(
 ) -> pl.DataFrame:
     """All races in the archive under both editions of every pair that is compared."""
     return derive.race_changes(register_changes, register_history, listed_races, crew_classes)
+
+
+@dg.multi_asset(outs=outs("vote_lines", "vote_races"), can_subset=True)
+@incremental(may_fail=True)
+def votes(
+    folders: Folders,
+    methods: pl.DataFrame,
+    vote_curves: pl.DataFrame,
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    printed_registers: pl.DataFrame,
+    log_factors: pl.DataFrame,
+    decisions: pl.DataFrame,
+    crew_classes: pl.DataFrame,
+) -> dict[str, pl.DataFrame]:
+    """Return the register and its last races under every combination that is put to the vote."""
+    return vote_tables(
+        vote_curves=vote_curves,
+        curves=curves,
+        tows=tows,
+        listed_races=listed_races,
+        printed_registers=printed_registers,
+        log_factors=log_factors,
+        decisions=decisions,
+        methods=read_methods(folders, methods),
+        crew_classes=crew_classes,
+    )
 
 
 @dg.multi_asset(outs=outs("register_years", "year_winners"), can_subset=True)

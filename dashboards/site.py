@@ -17,7 +17,7 @@ from dashboards.addresses import boat_path, edition_page, race_path, trace_path,
 from dashboards.markdown import get_title
 from dashboards.page import list_folders, render_page
 from dashboards.paper import make_pdf
-from dashboards.queries import boats, methods, pages, types
+from dashboards.queries import boats, methods, pages, types, votes
 from dashboards.queries.results import Data, Results
 from warehouse.queries.views import Views
 from warehouse.store.editions import NOTICE, NOTICE_EN, get_edition_path, list_edition_names
@@ -69,6 +69,8 @@ def list_pages(results: Results) -> Iterator[Page]:
     yield Page("types.html", "types", partial(types.read_types, results))
     yield Page("seasons.html", "seasons", partial(pages.read_seasons, results))
     yield Page("changes.html", "changes", partial(pages.read_changes, results))
+    if results.vote_switches:
+        yield Page(votes.PAGE, "proposal_parts", partial(votes.read_parts, results))
     yield Page("years.html", "years", partial(pages.read_years, results))
     yield Page("quality.html", "quality", partial(pages.read_quality, results))
     yield Page("about.html", "about", dict)

@@ -28,11 +28,11 @@ _WORDS_LIKE_CODES: Final = (
     say("method"), say("more scatter"), say("most reliable"), say("never towed"), say("new"),
     say("no steady part"), say("no steady window"), say("no type"),
     say("no valid curve"), say("none"), say("not calibrated"), say("note"),
-    say("nothing unforeseen"), say("number"), say("optimisation"), say("passed"), say("prescribed"),
+    say("nothing unforeseen"), say("number"), say("passed"), say("prescribed"),
     say("printed"), say("recomputed"), say("refuse"), say("rejected"), say("removed"), say("run"),
     say("runs"), say("same"), say("season"), say("set aside"), say("shared"), say("speed"),
     say("steps multiply to the total"), say("tables fit their schemas"), say("temperature"),
-    say("trimming"), say("unexplained"), say("unknown"), say("valid"), say("weight"), say("wind"),
+    say("unexplained"), say("unknown"), say("valid"), say("weight"), say("wind"),
     say("window"), say("women"),
 )  # fmt: skip
 """Texts whose code is the same words with underscores."""
@@ -51,15 +51,6 @@ CODES: Final[dict[str, Sentence]] = {
     "tow_again": pgettext("verdict", "tow again"),
     "not_made": pgettext("verdict", "nothing to compare with"),
     "newest": say("the newest of each crew"),
-    "as_read": say("log as read"),
-    "dgps": say("calibrated on dGPS"),
-    "multiply": say("log \u00d7 (1 + correction)"),
-    "divide": say("log / (1 - correction)"),
-    "vane": say("wind-vane correction"),
-    "b_from_length": say("B from length"),
-    "correction": say("speed correction"),
-    "operation": say("dividing, not multiplying"),
-    "estimate": say("estimated log factor"),
     "low": say("low (under 67 %)"),
     "middle": say("middle (67 to 80 %)"),
     "high": say("high (80 % and above)"),
@@ -109,8 +100,6 @@ CODES: Final[dict[str, Sentence]] = {
     "not determined": say("not determined"),
     "not settled": say("not settled"),
     "gps": say("GPS"),
-    "tool": say("ticks of the tool of 2015"),
-    "judgement": say("judgement"),
     "boat_season": say("boat in season"),
     "fleet": say("all boats"),
     "within_type": say("within a type"),
@@ -167,10 +156,6 @@ CODES: Final[dict[str, Sentence]] = {
     "beyond_curve": say("outside 85-115 % of the declared speed, where the curve does not hold"),
     "b_at_cap": say("B at its cap"),
     "printed_rebased": say("printed, re-based in closed form"),
-    "speed.factor": say("divide instead of multiply"),
-    "run_point.estimator": say("run point from means"),
-    "wind.averaging_s": say("wind averaged over 3 s"),
-    "curve.b": say("B without cap"),
     "doubted": say("to be looked at first"),
     "newer_tow_without_samples": say("the newest tow has no samples; an older one counts"),
     "rest": say("other"),
@@ -222,6 +207,22 @@ OPTIONS: Final[dict[str, Sentence]] = {
         for kind, texts in _OPTIONS_LIKE_NAMES.items()
         for text in texts
     },
+    "group.instruments": say("Errors of log and load cell"),
+    "group.selection": say("Which samples count"),
+    "group.surroundings": say("Wind and water"),
+    "group.fit": say("From run to curve"),
+    "about.instruments": say(
+        "How speed and tow force are corrected for errors of the instruments, and whether the log "
+        "is calibrated on GPS."
+    ),
+    "about.selection": say("Which part of a run counts, and which runs."),
+    "about.surroundings": say(
+        "How the resistance in air comes off and how the temperature of the water counts, also "
+        "where nobody recorded them."
+    ),
+    "about.fit": say(
+        "How the samples of a run become one point, and how the curve goes through these points."
+    ),
     "step.force": say("Tow force"),
     "step.calibration": say("Calibration on GPS"),
     "step.temperature": say("Water temperature"),
@@ -260,7 +261,7 @@ OPTIONS: Final[dict[str, Sentence]] = {
     "choice.end_speeds": say("from the end speeds"),
     "choice.ittc57": say("ITTC-57"),
 }
-"""Steps of a method, options of a step, where an option comes from, and its values."""
+"""Steps of a method and groups of them, options, where an option comes from, and its values."""
 
 FAILED_CHECKS: Final = {
     "tables_fit_their_schemas": say("tables do not fit their schemas"),
@@ -325,6 +326,8 @@ def name_direction(direction: int) -> Sentence:
 
 def name_option(key: str) -> Sentence:
     """Return an option in words, by `step.NAME`, `STEP.OPTION`, `status.NAME` or `choice.VALUE`.
+
+    A group of steps has `group.NAME`, and `about.NAME` for what it does.
 
     An option or value without a text is called by its name in the method file.
     """

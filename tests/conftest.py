@@ -51,7 +51,7 @@ STUDIES: Final = frozenset(
     for key in asset.keys
     if key.to_user_string() in TABLES
     if asset.group_names_by_key[key] == "consistency"
-    or key.to_user_string() in ("correction_steps", "option_effects", "option_curves")
+    or key.to_user_string() in ("correction_steps", "vote_curves")
 )
 """Tables that take two thirds of the time of a small rebuild."""
 

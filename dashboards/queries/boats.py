@@ -73,7 +73,6 @@ def read_boat(
     figure = prepare_curve_figure(own("curve_points"), runs, curves)
     tows = dict(curves.select("tow_id", "tow").rows())
     crews = read_answers(results, chosen_edition).get(fsn_no, []) if tows else []
-    size = pl.col("cw_effect_ratio").log().abs()
     acceptances = own("acceptances")
     accepted = acceptances.filter("newest").select("tow_id", "accepted_on", "accepted_by").unique()
     lineage = results.select_boat("lineage", fsn_no).filter(of_editions)
@@ -95,7 +94,6 @@ def read_boat(
         "in_type": own("compared_tows"),
         "repeat_pairs": own("repeat_pairs").with_columns(cw_ratio=pl.col("ln_ratio").exp()),
         "predicted": own("predicted_cw"),
-        "options": own("option_effects").sort(size, descending=True, maintain_order=True),
         "checks": own("flagged"),
         "hand_windows": results.select_boat("hand_windows", fsn_no),
         "acceptances": acceptances,

@@ -7,7 +7,8 @@ from typing import Any, Final, TypeAlias
 
 import polars as pl
 
-from pipeline.register.register import FIRST_PUBLISHED, choose_default_method
+from pipeline.register.register import choose_default_method, list_shown_methods
+from pipeline.studies.combinations import find_switches
 from pipeline.tables.row import Row
 from warehouse.queries.answers import choose_current_edition, line_changes
 from warehouse.queries.views import Views
@@ -37,12 +38,8 @@ class Results:
 
     @cached_property
     def methods(self) -> list[str]:
-        """Names of the methods that are shown, in the order of the database.
-
-        How 2014 was first printed is left out, unless it is the only method.
-        """
-        names = self.views.table("methods")["method"].to_list()
-        return [name for name in names if name != FIRST_PUBLISHED] or names
+        """Names of the methods that are shown, in the order of the database."""
+        return list_shown_methods(self.views.table("methods")["method"].to_list())
 
     @cached_property
     def method(self) -> str:
@@ -79,6 +76,11 @@ class Results:
     def boat_names(self) -> dict[str, str]:
         """The name of each boat that has one, by its number."""
         return dict(self.views.table("boats").select("fsn_no", "name").drop_nulls().rows())
+
+    @cached_property
+    def vote_switches(self) -> list[str]:
+        """The parts of the proposal that can be switched on and off; none without a proposal."""
+        return find_switches(self.views.table("vote_lines")["combination"].unique().to_list())
 
     @cached_property
     def objection(self) -> Row:

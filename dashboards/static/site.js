@@ -36,8 +36,7 @@
       else asked.set(name, value);
     }
     try { history.replaceState(null, "", `?${asked}${location.hash}`); } catch { /* of a page from disk it may not change */ }
-    const other = document.querySelector(".language");
-    other.href = `${other.getAttribute("href").split("?")[0]}?${asked}`;
+    document.querySelector(".language").search = asked;
   }
 
   // Tables: what needs this script, it adds. A click on a heading sorts; the headings of texts have a class.
@@ -146,6 +145,7 @@
     const asked = new URLSearchParams(location.search);
     for (const one of selects) if ([...one.options].some((option) => option.value === asked.get(one.name))) one.value = asked.get(one.name);
     show();
+    if (location.search) keep();
   }
 
   start();

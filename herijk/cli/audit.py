@@ -33,7 +33,6 @@ BOAT_FIELDS: Final = (
     "in_type",
     "repeat_pairs",
     "predicted",
-    "options",
     "set_aside",
 )
 TYPE_FIELDS: Final = (

@@ -104,7 +104,7 @@ def serve(archive: Path, store: "Store", host: str, port: int, may_start: bool) 
     help="Port on this machine; 0 for any that is free.",
 )
 def workbench(store: "Store", port: int) -> None:
-    """Change a method's options in a browser and see at once what happens to all boats."""
+    """Try other values of a method's options in a browser and see what happens to all boats."""
     from dashboards.guard import listen
     from dashboards.workbench.bench import Bench
     from dashboards.workbench.server import LOOPBACK, get_address, serve_bench

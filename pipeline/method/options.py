@@ -215,6 +215,16 @@ STEP_ORDER: Final = (
 )
 """The order in which steps are exchanged: that of the computation, and of the history."""
 
+STEP_GROUPS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
+    {
+        "instruments": ("speed", "force", "calibration"),
+        "selection": ("window", "runs"),
+        "surroundings": ("wind", "temperature", "unrecorded"),
+        "fit": ("run_point", "curve"),
+    }
+)
+"""What a meeting may put to the vote by itself: each step of `STEP_ORDER` is in one group."""
+
 START: Final = "start"
 """What a ladder has as step where it begins."""
 

@@ -77,6 +77,11 @@ def name_draft(method: str) -> str:
     return f"concept-{method}"
 
 
+def list_shown_methods(names: Sequence[str]) -> list[str]:
+    """Return the methods that are shown: all but `FIRST_PUBLISHED`, unless it is the only one."""
+    return [name for name in names if name != FIRST_PUBLISHED] or list(names)
+
+
 def choose_default_method(names: Sequence[str]) -> str:
     """Return the method, or draft, that is shown where none is asked for.
 

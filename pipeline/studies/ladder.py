@@ -6,6 +6,8 @@ is what it does on top of those before it.
 What a step does is in its own module.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import polars as pl
 
@@ -48,7 +50,7 @@ def ladder(
     of_old, of_new = links or (_estimate_instruments(old), _estimate_instruments(new))
     rungs: list[Computed] = []
     for count in range(len(STEP_ORDER) + 1):
-        plan = _mix_steps(old, new, count)
+        plan = exchange_steps(old, new, STEP_ORDER[:count])
         if count > 1 and plan.steps == rungs[-1].plan.steps:  # both methods have this step alike
             rungs.append(rungs[-1])
         else:
@@ -64,13 +66,13 @@ def _estimate_instruments(plan: Plan) -> pl.DataFrame | None:
     return None if estimated is None else estimated.tows
 
 
-def _mix_steps(old: Plan, new: Plan, count: int) -> Plan:
-    """Return the old steps of each tow, the first `count` of `STEP_ORDER` being the new."""
+def exchange_steps(old: Plan, new: Plan, exchanged: Sequence[str]) -> Plan:
+    """Return the old steps of each tow, those named `exchanged` being the new."""
     pairs, which = np.unique([old.which, new.which], axis=1, return_inverse=True)
     steps = []
     for before, after in pairs.T.tolist():
-        exchanged = {step: getattr(new.steps[after], step) for step in STEP_ORDER[:count]}
-        steps.append(old.steps[before].model_copy(update=exchanged))
+        of_new = {step: getattr(new.steps[after], step) for step in exchanged}
+        steps.append(old.steps[before].model_copy(update=of_new))
     return Plan(old.tows, tuple(steps), which.ravel(), old.cache)
 
 

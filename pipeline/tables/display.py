@@ -28,7 +28,7 @@ _TITLES_LIKE_NAMES: Final = (
     say("Season"),
     say("Season before"), say("Second"), say("Severity"), say("Shared B [m/s]"), say("Size"),
     say("Slope"), say("Source"), say("Speed"), say("Speed factor"), say("Standard speed [m/s]"),
-    say("Status"), say("Step"), say("Study"), say("Table"), say("Title"), say("Total"), say("Tows"),
+    say("Status"), say("Step"), say("Table"), say("Title"), say("Total"), say("Tows"),
     say("Unit"), say("Valid from"), say("Valid until"), say("Value"), say("Verdict"),
     say("Water depth [m]"), say("Water temperature [°C]"), say("Weight [kg]"), say("What"),
     say("Where"), say("Wind [m/s]"), say("Within"),
@@ -109,10 +109,7 @@ TITLES: Final[dict[str, Sentence]] = {
     "code_version": say("Code"),
     "lo": say("low"),
     "hi": say("high"),
-    "option": say("Choice"),
     "median_ratio": say("Median"),
-    "lo_ratio": say("5 %"),
-    "hi_ratio": say("95 %"),
     "lowest_ratio": say("Lowest"),
     "highest_ratio": say("Highest"),
     "from_method": say("From"),
@@ -226,7 +223,6 @@ TITLES: Final[dict[str, Sentence]] = {
     "new_speed_rank": say("Speed rank after"),
     "run_end_s": say("End of run [s]"),
     "fitted_cw_kg_m": say("Cw of the curve [kg/m]"),
-    "cw_effect_ratio": say("Cw new / old"),
     "ln_ratio": say("Cw new / old"),
     "power_ratio": say("Power new / old"),
     "n_disagree": say("Disagree"),
@@ -320,8 +316,8 @@ class Kind(Enum):
 
 _KINDS: Final = {
     Kind.CHANGE: (
-        "cw_ratio", "power_ratio", "time_ratio", "shift_ratio", "cw_effect_ratio", "total",
-        "median_ratio", "lo_ratio", "hi_ratio", "lowest_ratio", "highest_ratio",
+        "cw_ratio", "power_ratio", "time_ratio", "shift_ratio", "total",
+        "median_ratio", "lowest_ratio", "highest_ratio",
         "median_factor", "lowest_factor", "highest_factor", "median_power_ratio",
         "printed_median_ratio", "printed_largest_ratio", "farthest_ratio", "mean_factor",
     ),
@@ -336,7 +332,7 @@ _KINDS: Final = {
     Kind.CODE: (
         "status", "flags", "flag", "reason", "cut_reason", "change", "source", "step", "code",
         "component", "quantity", "explaining", "within", "severity", "check", "shared", "scope",
-        "old_remark", "new_remark", "choice", "pooling", "option", "speed_reason", "cause",
+        "old_remark", "new_remark", "choice", "pooling", "speed_reason", "cause",
         "log", "what", "outcome", "reason_code", "lost", "instrument", "verdict", "rule",
         "confused_with", "rest_verdict", "weight_verdict", "tow_speed_verdict", "kind",
         "known_checks", "doubted_by", "current_verdict",

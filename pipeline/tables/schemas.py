@@ -42,7 +42,7 @@ TABLES: Final = _collect_tables(
 """Every class of these modules but those that begin with an underscore, which tables inherit."""
 
 STUDY: Final = (
-    "hand_windows", "season_links", "best_estimate_weights", "option_curves",
+    "hand_windows", "season_links", "best_estimate_weights", "vote_curves",
     "type_line_points", "print_reproduction",
 )  # fmt: skip
 """Tables that studies and pages work with: in the database they are in the schema `study`."""

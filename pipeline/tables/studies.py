@@ -30,38 +30,59 @@ class SeasonChanges(PerMethod):
     highest_ratio = column.number("highest ratio of a tow", min_exclusive=0)
 
 
-_STUDY = "judgement: what could be chosen either way; tool: what the tool of 2015 let one tick"
+class _Combination(dy.Schema):
+    """Rows per combination of groups of steps that are put to the vote."""
 
-
-class OptionEffects(PerMethod):
-    """How much choices matter, on top of a method: of judgement, and those of the tool of 2015.
-
-    Choices of judgement have no rows for a tow whose log is estimated: there, another option would
-    also move the factor of the season.
-    """
-
-    study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
-    tow_id = column.tow_id(primary_key=True)
-    option = column.text("option of a step", primary_key=True)
-    cw_effect_ratio = column.number("Cw with the second value / with the first")
-
-
-class OptionCurves(PerTow):
-    """Curves of a tow under every combination of the ticks of the tool of 2015, at each speed."""
-
-    speed = column.text(
-        "the log as_read, with the method's dgps or estimated factor, or its percentage by which "
-        "to multiply or divide",
+    from_method = column.text("method that holds where nothing is on", primary_key=True)
+    to_method = column.text("method that is put to the vote", primary_key=True)
+    combination = column.text(
+        "groups of steps that are as in to_method, joined by +: instruments (speed, force, "
+        "calibration), selection (window, runs), surroundings (wind, temperature, unrecorded), fit "
+        "(run_point, curve); none where every step is as in from_method",
         primary_key=True,
-        regex="^(as_read|dgps|estimated|multiply|divide)$",
     )
-    optimisation = column.flag("air coefficients searched per run", primary_key=True)
-    trimming = column.flag("only the steady part of a run", primary_key=True)
-    vane = column.flag("wind averaged over 3 s", primary_key=True)
-    b_from_length = column.flag("B is hull speed", primary_key=True)
+
+
+class VoteCurves(_Combination):
+    """The curve of every tow under every combination of what is put to the vote."""
+
+    tow_id = column.tow_id(primary_key=True)
     a_kg_m = column.number("A")
-    b_m_s = column.optional("B; empty where Cw does not rise")
+    b_m_s = column.optional("B; empty where it is not determined")
     cw_kg_m = column.number("Cw at the declared speed")
+
+
+class VoteLines(_Combination):
+    """The register under every combination, each line beside the one where nothing is on."""
+
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    empty_thwart = column.empty_thwart(primary_key=True)
+    tow_id = column.tow_id(nullable=True)
+    cw_kg_m = column.optional("Cw at the declared speed; empty without a line")
+    cw_ratio = column.optional("Cw / Cw where nothing is on, at the speed declared there")
+    gain_in_two_hours_s = column.optional(
+        "what it gives in a race of two hours at equal power; minus is less"
+    )
+
+
+class VoteRaces(_Combination):
+    """Results of the last season with races under every combination."""
+
+    race = column.text("name of the race", primary_key=True)
+    race_date = column.day("day of the race", primary_key=True)
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    empty_thwart = column.empty_thwart(primary_key=True)
+    old_power_w = column.optional("power per rower where nothing is on")
+    new_power_w = column.optional("power per rower under the combination")
+    old_rank = dy.Int32(
+        description="place in race and class where nothing is on, among the crews that both rank",
+        nullable=True,
+    )
+    new_rank = dy.Int32(description="the same under the combination", nullable=True)
 
 
 class PrintReproduction(PerTow):

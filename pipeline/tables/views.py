@@ -87,23 +87,6 @@ ORDER BY from_method, to_method, season, position""",
         ("correction_steps", "tows"),
         {"tows": "tows", "factor": "geometric mean of the factor on Cw; they multiply [1]"},
     ),
-    "option_summary": View(
-        "How much each option moves Cw over all tows to which it can matter.",
-        """
-SELECT method, study, option, count(*) AS tows, median(cw_effect_ratio) AS median_ratio,
-    quantile_cont(cw_effect_ratio, 0.05) AS lo_ratio,
-    quantile_cont(cw_effect_ratio, 0.95) AS hi_ratio
-FROM option_effects
-GROUP BY ALL
-ORDER BY method, study, option""",
-        ("option_effects",),
-        {
-            "tows": "tows",
-            "median_ratio": "median of Cw with the second value / with the first [1]",
-            "lo_ratio": "5 % of the tows lie below [1]",
-            "hi_ratio": "5 % of the tows lie above [1]",
-        },
-    ),
     "quality_counts": View(
         "How many curves have each status and flag, and how many runs do not count, and why.",
         """

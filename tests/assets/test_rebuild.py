@@ -46,7 +46,7 @@ def assert_same_tables(one: dict[str, pl.DataFrame], other: dict[str, pl.DataFra
         assert_frame_equal(frame, other[name], check_exact=True)
 
 
-SUMMED_UP = ("season_ladder", "option_summary", "changes_by_cause", "contents")
+SUMMED_UP = ("season_ladder", "vote_lines", "vote_races", "changes_by_cause", "contents")
 """Tables about studies and comparisons of types, besides their own."""
 
 

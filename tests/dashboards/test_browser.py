@@ -15,6 +15,9 @@ import pytest
 from dashboards.addresses import boat_path, edition_page, race_path, type_path
 from dashboards.guides import GUIDES
 from dashboards.language import Language
+from dashboards.queries.results import Results
+from dashboards.queries.votes import PAGE as PARTS
+from dashboards.queries.votes import read_parts
 from dashboards.site import STATIC
 from pipeline.messages import LANGUAGES
 from pipeline.tables.display import get_column
@@ -27,8 +30,8 @@ pytestmark = NEEDED
 
 NOT_SIDEWAYS = {"wide": ".scroll", "desktop": "figure", "phone": ".scroll:has(.cards)"}
 """What fits its box: a phone shows lines of the register as cards, and other tables sideways."""
-KINDS = ["index", "register", "boats", "types", "seasons", "changes", "years", "quality", "about",
-         "words", GUIDES[0], "boat", "type", "race", "edition"]  # fmt: skip
+KINDS = ["index", "register", "boats", "types", "seasons", "changes", "parts", "years",
+         "quality", "about", "words", GUIDES[0], "boat", "type", "race", "edition"]  # fmt: skip
 """A page of each kind."""
 DRAFT = "concept-as-published"
 CW = {
@@ -131,6 +134,10 @@ def test_a_page_is_in_one_language_and_leads_to_the_other(visit):
     assert "Search" in page.locator(".tools").first.inner_text()
     assert "," not in cw_cells(page).first.inner_text()
     assert page.locator("select[name=edition]").input_value() == DRAFT
+    page.reload()
+    page.get_by_role("link", name="Nederlands").click()
+    page.wait_for_url("**/register.html*")
+    assert page.locator("select[name=edition]").input_value() == DRAFT
 
 
 @pytest.mark.parametrize("misspell", [str, lambda name: name[:4] + name[5:]])
@@ -181,6 +188,81 @@ def test_races_follow_the_edition(visit, paths):
     rows = shown(page).evaluate_all("rows => rows.map(row => row.parentElement.dataset.to_edition)")
     assert rows
     assert all(EDITIONS[1] in row.split("|") for row in rows)
+
+
+def read_gains(page):
+    """The seconds of each crew, and the length of its bar, as a page shows them."""
+    rows = page.locator(".gains tbody tr")
+    texts = rows.evaluate_all("rows => rows.map(row => row.cells[2].textContent)")
+    lengths = rows.evaluate_all(
+        "rows => rows.map(row => Number(row.querySelector('rect').getAttribute('width')))"
+    )
+    return [(as_number(text), length) for text, length in zip(texts, lengths, strict=True)]
+
+
+def as_number(text):
+    return int(text.replace("\N{MINUS SIGN}", "-")) if text != "\N{EN DASH}" else None
+
+
+def read_podiums(page):
+    """New place, boat and old place of all who are on a podium that is seen, class by class."""
+    rows = page.locator(".podium tbody tr:visible")
+    return [
+        (as_number(new), boat, as_number(old))
+        for new, boat, old in rows.evaluate_all(
+            "rows => rows.map(row => [row.cells[0].textContent,"
+            " row.querySelector('a').textContent, row.cells[2].textContent.trim()])"
+        )
+    ]
+
+
+def list_stored(data, place):
+    """What the tables have at the place of a combination, as `read_gains`, `read_podiums`."""
+    seconds = [row["seconds"][place] for row in data["crews"]]
+    gains = [(one, abs(one or 0)) for one in seconds]
+    podiums = []
+    for of_class in data["races"][0]["classes"]:
+        rows = [(row["new"][place], row["name"], row["old"][place]) for row in of_class["rows"]]
+        on_podium = [row for row in rows if row[0] is not None and row[0] <= data["podium"]]
+        podiums += sorted(on_podium, key=lambda row: row[0])
+    return gains, podiums
+
+
+def test_a_member_switches_a_part_off_and_sends_the_address(visit, store):
+    """Bars and podium become the stored ones at once, and again for whoever opens the address."""
+    with Views(store) as views:
+        data = read_parts(Results(views))
+    page = visit(PARTS)
+    switches = page.get_by_role("switch")
+    assert switches.count() == len(data["switches"]) > 1
+    everything = 2 ** switches.count() - 1
+    assert (read_gains(page), read_podiums(page)) == list_stored(data, everything)
+    headline = page.locator(".headline:visible").inner_text()
+    switches.first.focus()
+    page.keyboard.press("Space")
+    page.wait_for_url("**#on=*")
+    changed = (read_gains(page), read_podiums(page))
+    assert changed == list_stored(data, everything - 1) != list_stored(data, everything)
+    assert page.locator(".headline:visible").inner_text() != headline
+    page.reload()
+    assert not switches.first.is_checked()
+    assert (read_gains(page), read_podiums(page)) == changed
+    page.get_by_role("link", name="English").click()
+    page.wait_for_url("**/en/parts.html#on=*")
+    assert not switches.first.is_checked()
+    assert (read_gains(page), read_podiums(page)) == changed
+
+
+def test_without_scripts_a_page_shows_the_whole_proposal_and_says_so(context, site, store):
+    with Views(store) as views:
+        data = read_parts(Results(views))
+    with context.browser.new_context(java_script_enabled=False) as without_scripts:
+        page = without_scripts.new_page()
+        page.goto((site / "en" / PARTS).as_uri())
+        assert "Without JavaScript" in page.locator("main").inner_text()
+        assert page.get_by_role("switch").first.is_disabled()
+        shown = page.locator(".gains tbody tr td:nth-child(3)").all_inner_texts()
+    assert [as_number(text) for text in shown] == [row["seconds"][-1] for row in data["crews"]]
 
 
 def test_a_table_downloads_what_it_shows_and_a_name_is_no_formula(visit):

@@ -14,6 +14,7 @@ from dashboards.guides import GUIDES
 from dashboards.language import Language
 from dashboards.queries.pages import SHEETS
 from dashboards.queries.results import Results
+from dashboards.queries.votes import PAGE as PARTS
 from dashboards.site import build_site, list_pages
 from pipeline.register.register import choose_default_method
 from pipeline.tables.display import TITLES, Kind, get_column
@@ -57,6 +58,16 @@ def test_every_page_is_there(site, built, results):
     subjects |= {type_path(name) for name in results.views.type_names()}
     subjects |= {race_path(race, day) for race, day in results.views.race_days()}
     assert subjects - listed == set()
+    assert PARTS in listed
+
+
+def test_without_a_proposal_no_page_leads_to_its_parts(bench):
+    bench.rebuild(METHODS[:1])
+    with Views(bench.store) as views:
+        results = Results(views)
+        listed = {page.path: page for page in list_pages(results)}
+        assert PARTS not in listed
+        assert not any(listed[path].query()["has_parts"] for path in ("index.html", "changes.html"))
 
 
 def test_every_page_can_be_reached_from_the_first(site):
