@@ -9,10 +9,12 @@ from types import SimpleNamespace
 
 import polars as pl
 import pytest
+from playwright.sync_api import sync_playwright
 
 from tests import league
 from tests.architecture.repository import ROOT, read
 from tests.conftest import Workbench
+from tests.dashboards.browser import CHROMIUM, FLAGS, IN_CI
 from tests.herijk.test_snippets import blocks, herijk_lines, shell_lines
 from warehouse.archive.profile import parse_profiles
 
@@ -58,6 +60,7 @@ def test_the_page_sets_up_a_register_of_its_own(typed):
     check_register(typed.data)
     check_races(typed.data)
     check_pages(typed.data)
+    check_in_browser(typed.data.data / "site")
     assert "4 rowers, men" in typed.printed["audit CR3"]
     assert "Races on corrected time: 6 results" in typed.printed["compare league-2024"]
 
@@ -113,6 +116,27 @@ def check_pages(data):
     assert "mixed crews" in pages["boats/CR22.html"]
     assert "Corrected time" in next(text for path, text in pages.items() if "races/" in path)
     assert "A tow counts for 3 years, to the day." in pages["method.html"]
+
+
+def check_in_browser(site):
+    """What a reader chooses is shown, on a site without a second language."""
+    if CHROMIUM is None and not IN_CI:
+        return
+    faults = []
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        page = browser.new_page()
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.goto((site / "register.html").as_uri())
+        shown = page.locator("tbody tr:visible td").all_inner_texts()
+        page.locator(".selects select").select_option("concept-league-2024")
+        chosen = page.locator("tbody tr:visible td").all_inner_texts()
+        page.goto((site / "parts.html").as_uri())
+        page.locator("[role=switch]").first.uncheck()
+        browser.close()
+    assert faults == []
+    assert shown != chosen
+    assert "2028-12-31" in chosen
 
 
 def test_the_page_says_what_the_example_gives():
