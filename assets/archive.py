@@ -117,6 +117,7 @@ def blocks(folders: Folders, samples: pl.DataFrame) -> pl.DataFrame:
 def archive(
     folders: Folders,
     list_faults: pl.DataFrame,
+    crew_classes: pl.DataFrame,
     listed_boats: pl.DataFrame,
     listed_windows: pl.DataFrame,
     listed_tows: pl.DataFrame,
@@ -128,6 +129,7 @@ def archive(
     read = samples.select("tow_id")
     tables = archive_tables(
         list_faults=list_faults,
+        crew_classes=crew_classes,
         listed_boats=listed_boats,
         listed_windows=listed_windows,
         season_tows=listed_tows.join(read, on="tow_id", how="semi").sort("season", "tow_id"),

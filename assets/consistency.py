@@ -31,6 +31,7 @@ def comparison_of_types(
     repeat_pairs: pl.DataFrame,
     listed_races: pl.DataFrame,
     differences_that_matter: pl.DataFrame,
+    crew_classes: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
     """Whether boats of a type are equal, and each tow beside the others of its type."""
     return compared.type_tables(
@@ -38,6 +39,7 @@ def comparison_of_types(
         repeat_pairs,
         listed_races,
         dict(differences_that_matter.rows()),
+        crew_classes,
     )
 
 

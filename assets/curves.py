@@ -33,13 +33,19 @@ def recomputed(
     read_runs: pl.DataFrame,
     hand_windows: pl.DataFrame,
     blocks: pl.DataFrame,
+    crew_classes: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
     """Run points, curves, log factors, assessments and members of all tows, per method.
 
     A tow on which our own code fails is set aside, so the sound tows are known only here.
     """
     archive = ArchiveRuns(
-        boats=boats, tows=read_tows, tow_runs=read_runs, hand_windows=hand_windows, blocks=blocks
+        boats=boats,
+        tows=read_tows,
+        tow_runs=read_runs,
+        hand_windows=hand_windows,
+        blocks=blocks,
+        crew_classes=crew_classes,
     )
     made = recompute_archive(read_methods(folders, applied_methods), archive)
     for what, trace in made.failures.iter_rows():

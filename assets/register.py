@@ -28,6 +28,7 @@ def registers(
     log_factors: pl.DataFrame,
     decisions: pl.DataFrame,
     correction_steps: pl.DataFrame,
+    crew_classes: pl.DataFrame,
     published_register: pl.DataFrame,
     published_register_history: pl.DataFrame,
     published_register_changes: pl.DataFrame,
@@ -52,6 +53,7 @@ def registers(
         decisions=decisions,
         published=published,
         correction_steps=correction_steps,
+        crew_classes=crew_classes,
         methods=read_methods(folders, methods),
     )
 
@@ -87,10 +89,13 @@ def inspections(
 @dg.asset
 @incremental(may_fail=True)
 def race_changes(
-    register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
+    register_changes: pl.DataFrame,
+    register_history: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    crew_classes: pl.DataFrame,
 ) -> pl.DataFrame:
     """All races in the archive under both editions of every pair that is compared."""
-    return derive.race_changes(register_changes, register_history, listed_races)
+    return derive.race_changes(register_changes, register_history, listed_races, crew_classes)
 
 
 @dg.multi_asset(outs=outs("vote_lines", "vote_races"), can_subset=True)
@@ -105,6 +110,7 @@ def votes(
     printed_registers: pl.DataFrame,
     log_factors: pl.DataFrame,
     decisions: pl.DataFrame,
+    crew_classes: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
     """Return the register and its last races under every combination that is put to the vote."""
     return vote_tables(
@@ -116,6 +122,7 @@ def votes(
         log_factors=log_factors,
         decisions=decisions,
         methods=read_methods(folders, methods),
+        crew_classes=crew_classes,
     )
 
 
@@ -128,11 +135,12 @@ def registers_of_years(
     correction_steps: pl.DataFrame,
     tows: pl.DataFrame,
     listed_races: pl.DataFrame,
+    crew_classes: pl.DataFrame,
     ensemble: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
     """Return the register of every past year, as published and by each method, and its races."""
     applied = read_methods(folders, methods)
     seasons = tows["season"].unique().sort().to_list()
     lines = years.register_years(register_history, correction_steps, applied, seasons)
-    winners = years.year_winners(register_history, listed_races, ensemble, applied)
+    winners = years.year_winners(register_history, listed_races, ensemble, applied, crew_classes)
     return {"register_years": lines, "year_winners": winners}

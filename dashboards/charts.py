@@ -272,9 +272,8 @@ def draw_scatter(
     """
     known = tows.drop_nulls([quantity, explaining])
     every = _stack_columns(known, [quantity, ends[0], ends[1]])
-    crews = [
-        LegendEntry.from_kind(language.name_crew(crew), kind) for crew, kind in CREW_KINDS.items()
-    ]
+    kinds = dict(zip([code for code, _ in language.list_crews()], CREW_KINDS, strict=False))
+    crews = [LegendEntry.from_kind(language.name_crew(crew), kind) for crew, kind in kinds.items()]
     panels = []
     for method in known["method"].unique(maintain_order=True):
         plot = Plot(language, 380, 290, legend=crews)
@@ -287,14 +286,15 @@ def draw_scatter(
             plot.add_band(at, list(map(y, of_class["lo"])), list(map(y, of_class["hi"])))
             plot.add_line(list(zip(at, map(y, of_class["y"]), strict=True)), GREY)
         for row in known.filter(method=method).to_dicts():
-            _add_tow(plot, x, y, row, quantity, ends, explaining)
+            kind = kinds.get(row["crew_class"], CREW_KINDS[0])
+            _add_tow(plot, x, y, row, kind, quantity, ends, explaining)
         picture = plot.to_svg(f"{caption}: {named}")
         panels.append(Markup("<div><b>{}</b>{}</div>").format(named, picture))
     return Markup('<div class="panels">{}</div>').format(Markup("").join(panels))
 
 
-CREW_KINDS: Final = {"H": 0, "D": 2}
-"""A circle for men's crews, a triangle for women's."""
+CREW_KINDS: Final = (0, 2, 1, 3, 4)
+"""The mark of each class of crews, in order: a circle for men's crews, a triangle for women's."""
 
 
 def _add_tow(
@@ -302,12 +302,12 @@ def _add_tow(
     x: Scale,
     y: Scale,
     row: Row,
+    kind: int,
     quantity: str,
     ends: tuple[str, str],
     explaining: str,
 ) -> None:
     """Add a tow with its interval, and its name where it stands out in Cw."""
-    kind = CREW_KINDS[row["crew_class"]]
     at, up = x(row[explaining]), y(row[quantity])
     low, high = row[ends[0]], row[ends[1]]
     if low is not None:

@@ -44,10 +44,12 @@ class Language:
 
     Args:
         tag: `nl` or `en`.
+        about: facts about the database: what its own classes of crews are called.
     """
 
-    def __init__(self, tag: str) -> None:
+    def __init__(self, tag: str, about: Mapping[str, str] | None = None) -> None:
         self.tag = tag
+        self._own_crews: dict[str, str] = json.loads((about or {}).get("crew_names", "{}"))
         self._say = speaker(tag)
         self._marks = str.maketrans({".": DECIMALS[tag], "-": MINUS})
 
@@ -178,7 +180,16 @@ class Language:
 
     def name_crew(self, crew_class: str) -> str:
         """Return the people of a class."""
-        return self.say(words.name_crew(crew_class))
+        return self._own_crews.get(crew_class) or self.say(words.name_crew(crew_class))
+
+    @property
+    def is_other_federation(self) -> bool:
+        """Whether the archive has its own classes of crews: it is not the Dutch federation's."""
+        return bool(self._own_crews)
+
+    def list_crews(self) -> list[tuple[str, str]]:
+        """Return every class by its code, with its people."""
+        return [(code, self.name_crew(code)) for code in self._own_crews or words.CREWS]
 
     def name_edition(self, edition: str) -> str:
         """Return an edition, or a draft by its method, as people call it."""

@@ -40,6 +40,7 @@ def make_pdf(
     *,
     simulated: bool,
     footing: str = "",
+    about: Mapping[str, str] | None = None,
 ) -> bytes:
     """Return a document as PDF.
 
@@ -50,8 +51,9 @@ def make_pdf(
         title: of the file, and at its foot where there is no `footing`.
         simulated: whether its boats are.
         footing: at the foot of every page.
+        about: facts about the database.
     """
-    spoken = Language(language)
+    spoken = Language(language, about)
     document = Document(spoken)
     mark = spoken.say(words.SIMULATED) if simulated else ""
     content = {

@@ -22,11 +22,10 @@ from dashboards.addresses import (
     type_path,
 )
 from dashboards.markdown import get_title
-from dashboards.page import FOLDERS, render_page
+from dashboards.page import list_folders, render_page
 from dashboards.paper import make_pdf
 from dashboards.queries import boats, inspections, methods, pages, types, votes
 from dashboards.queries.results import Data, Results
-from pipeline.messages import LANGUAGES
 from warehouse.queries.views import Views
 from warehouse.store.editions import NOTICE, NOTICE_EN, get_edition_path, list_edition_names
 from warehouse.store.files import write_folder_beside
@@ -84,7 +83,8 @@ def list_pages(results: Results) -> Iterator[Page]:
     yield Page(INSPECTIONS, "inspections", partial(inspections.read_inspections, results))
     yield Page("about.html", "about", dict)
     yield Page("words.html", "words", dict)
-    yield Page("audit.html", "guide", partial(pages.read_guide, "audit"))
+    if "crew_names" not in results.views.about():  # the guide tells of the Dutch federation
+        yield Page("audit.html", "guide", partial(pages.read_guide, "audit"))
     for name in results.methods:
         path = methods.get_method_page(results, name)
         yield Page(path, "method", partial(methods.read_method, results, name))
@@ -146,9 +146,9 @@ def _write_part(
         for page in list(list_pages(results))[part::N_PARTS]:
             with round_one(f"page {page.path}"):
                 data = page.query() | {"has_reports": has_reports}
-                for language in LANGUAGES:
+                for language, of_language in list_folders(about).items():
                     html = render_page(page.path, page.template, data, language, about)
-                    _write(folder / FOLDERS[language] / page.path, html)
+                    _write(folder / of_language / page.path, html)
                 if page.template == "boat":
                     _write_traces(folder, data)
         if part == 0:

@@ -12,10 +12,6 @@ UNKNOWN_LOG_SD: Final = 0.06
 """Spread of the ln factor of a log about which nothing is known: the worst was 6 % off
 (presentation 2015, "Meten van de sleepsnelheid")."""
 
-SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
-"""Power per rower under which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
-2015). Women tow at 40-55 W instead of 70-90 W: the same share of their range (inferred)."""
-
 
 class Era(NamedTuple):
     """Seasons with like instruments.

@@ -41,7 +41,7 @@ def fill_database(store: Store, tables: dict[str, pl.DataFrame]) -> None:
 
 def compute_tables(store: Store, methods: Sequence[Method], today: dt.date) -> None:
     """Compute curves and registers from the tables about the archive as they are in the lake."""
-    names = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
+    names = ("boats", "tows", "tow_runs", "hand_windows", "blocks", "crew_classes")
     archive = ArchiveRuns(**{name: store.read(name) for name in names})
     made = recompute_archive(methods, archive)
     earlier = store.read("quarantine")
@@ -72,6 +72,7 @@ def make_registers(store: Store, methods: Sequence[Method]) -> None:
         decisions=tabulate_decisions(read_decisions(store.root / FILE_NAME)),
         published=published,
         correction_steps=read_earlier(store, "correction_steps"),
+        crew_classes=store.read("crew_classes"),
         methods=methods,
     )
     for name, frame in (made | {"editions": published["editions"]}).items():

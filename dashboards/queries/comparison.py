@@ -71,6 +71,7 @@ def _sum_up(effect: DiffReport) -> Data:
         "causes": [one | {"main_cause": pick_cause(one)} for one in effect.causes],
         "n_ranked": len(ranked),
         "moved": moved,
+        "is_timed": any(race["new_corrected_time_s"] is not None for race in ranked),
         "n_podium": sum(race["podium_changed"] for race in ranked),
     }
 

@@ -23,6 +23,7 @@ from warehouse.queries.answers import estimate_race_chances
 from warehouse.queries.change_report import read_last_changes
 from warehouse.queries.views import DRAFT
 from warehouse.queries.years import summarise_years
+from warehouse.store.crew_classes import read_crew_classes
 from warehouse.store.editions import CSV, NOTICE, NOTICE_EN, XLSX, get_edition_path
 from warehouse.store.methods import KnownMethods
 
@@ -201,6 +202,7 @@ def read_due_list(results: Results, method: str | None = None) -> Data:
         "method": chosen,
         "as_of": as_of,
         "lines": lines.with_columns(urgency=urgency),
+        "crew_classes": read_crew_classes(results.views.store).to_dicts(),
         "n_soon": lines.filter(until.is_between(as_of, as_of + MONTHS_AHEAD)).height,
         "n_over": lines.filter(until < as_of).height,
         "urgencies": URGENCIES,
@@ -448,6 +450,7 @@ def read_race(results: Results, race: str, day: dt.date) -> Data:
             sum_up_class(own, chances.get((f"{race} {day}", own["crew_class"][0])))
             for own in classes
         ],
+        "is_timed": rows["new_corrected_time_s"].is_not_null().any(),
         "names": names,
         "chosen": {"to_edition": chosen},
     }
@@ -463,9 +466,10 @@ def sum_up_class(rows: pl.DataFrame, chance: float | None) -> Row:
     winners = {}
     for side in ("old", "new"):
         winners[side] = rows.filter(pl.col(f"{side}_rank") == 1)["name"].first()
-    has_power = pl.any_horizontal(pl.col("old_power_w", "new_power_w").is_not_null())
+    has_power = pl.any_horizontal(pl.col("old_power_w", "new_power_w", "new_rank").is_not_null())
     n_known, n_placed = rows.filter(has_power).height, rows["new_rank"].count()
     is_among_few = n_placed < n_known
+    by_power = rows.filter(pl.col("new_corrected_time_s").is_null())
     return {
         "crew_class": rows["crew_class"][0],
         **winners,
@@ -473,7 +477,7 @@ def sum_up_class(rows: pl.DataFrame, chance: float | None) -> Row:
         "n_placed": n_placed,
         # Who else might have won is not known of crews without a place.
         "chance": None if is_among_few else chance,
-        **measure_fatigue_range(rows.drop_nulls("new_rank")["rowing_time_s"]),
+        **measure_fatigue_range(by_power.drop_nulls("new_rank")["rowing_time_s"]),
     }
 
 

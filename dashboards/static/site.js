@@ -36,7 +36,7 @@
       else asked.set(name, value);
     }
     try { history.replaceState(null, "", `?${asked}${location.hash}`); } catch { /* of a page from disk it may not change */ }
-    document.querySelector(".language").search = asked;
+    for (const other of all(".language")) other.search = asked; // where there is another one
   }
 
   // Tables: what needs this script, it adds. A click on a heading sorts; the headings of texts have a class.

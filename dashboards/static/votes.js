@@ -37,7 +37,7 @@
     for (const said of all("[data-place]")) said.hidden = Number(said.dataset.place) !== place;
     for (const row of all("[data-seconds]")) showGain(row, place);
     for (const body of all(".podium tbody")) showPodium(body, place);
-    document.querySelector(".language").hash = location.hash;
+    for (const other of all(".language")) other.hash = location.hash; // where there is another one
   }
 
   function read() { // without a choice in the address, all is on

@@ -129,7 +129,7 @@ class BenchPage:
         def link_to_boat(name: str, value: object) -> str:
             return asked.address(boat=value) + "#boat" if name == "fsn_no" and value else ""
 
-        document = Document(Language(self.language), "", chosen, link=link_to_boat)
+        document = Document(Language(self.language, self._about), "", chosen, link=link_to_boat)
         return document.render(
             "workbench",
             asked=asked,

@@ -17,22 +17,30 @@ if TYPE_CHECKING:
 
 @click.command(
     cls=Command,
-    examples=("herijk init archief",),
+    examples=("herijk init archief", "herijk init archive --profile skiffs.toml"),
 )
 @argument("directory", type=PATH, help="Folder to make.")
+@option(
+    "--profile",
+    type=PATH,
+    help="An archief.toml of another federation: folders, files, columns and classes are named by "
+    "it.",
+)
 @form_options
-def init(directory: Path) -> None:
+def init(directory: Path, profile: Path | None) -> None:
     """Make an empty archive with examples, spreadsheets to fill in, and a page that explains it."""
     from warehouse.archive.empty_archive import write_templates
 
     try:
-        write_templates(directory)
+        write_templates(directory, profile)
     except OSError as error:
         raise MissingKnowledgeError(
             "no archive can be made in {}: {}. Name another folder", directory, error.strerror
         ) from error
     files = sorted(file for file in directory.rglob("*") if file.is_file())
     said = tell("An empty archive is in {}; begin with LEESMIJ.md.", directory)
+    if profile is not None:
+        said = tell("An empty archive with the names of {} is in {}.", profile, directory)
     show_files(files, said)
 
 

@@ -117,7 +117,8 @@ def audit(
         results = Results(views)
         shown_methods = _choose_methods(results, method)
         fsn_no = find_boat(views, names[0]) if len(names) == 1 else None
-        simulated = views.about().get("simulated") == "true"
+        about = views.about()
+        simulated = about.get("simulated") == "true"
         if fsn_no is not None:
             data = boats.read_boat(results, fsn_no, edition=edition, methods=shown_methods)
             data |= {"steps_shown": steps, "simulated": simulated}
@@ -127,14 +128,14 @@ def audit(
                     "boat {} has no tow {!r}; it has {}", fsn_no, tow, ", ".join(known_tows)
                 )
             chosen = {"tow_id": tow or "", "method": method or ""}
-            show("audit_boat", data, BOAT_FIELDS, chosen=chosen, folded=steps)
+            show("audit_boat", data, BOAT_FIELDS, chosen=chosen, folded=steps, about=about)
         else:
             known = dict.fromkeys(choose_type(views, name) for name in names)
             methods = _choose_type_methods(shown_methods, steps, method)
             data = types.compare_types(results, list(known), methods)
             quoted = " ".join(f'"{name}"' for name in known)
             data |= {"steps_shown": steps, "simulated": simulated, "quoted_names": quoted}
-            show("audit_types", data, TYPE_FIELDS, folded=steps)
+            show("audit_types", data, TYPE_FIELDS, folded=steps, about=about)
     if is_published:
         show_lineage(store, str(edition), names[0])
 

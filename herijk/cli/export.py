@@ -73,7 +73,7 @@ def certificate(
         )
         name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
         title = " ".join(filter(None, (tell("Certificate"), fsn_no, chosen)))
-        _write(store, "certificate", made, name, title, out, views.simulated(chosen))
+        _write(store, "certificate", made, name, title, out, views.simulated(chosen), views.about())
 
 
 @export.command(
@@ -113,7 +113,8 @@ def inspection(boat: str | None, store: "Store", race: str | None, out: Path | N
         title = " ".join(filter(None, (tell("Inspection on the race day"), about["race"], fsn_no)))
         facts = views.about()
         made = read_sheets(results, boats) | about | {"code_version": facts.get("code_version", "")}
-        _write(store, "inspection", [made], name, title, out, facts.get("simulated") == "true")
+        simulated = facts.get("simulated") == "true"
+        _write(store, "inspection", [made], name, title, out, simulated, facts)
 
 
 @export.command(examples=("herijk export pages --out site-2015 --as-of 2015-06-01",))
@@ -165,7 +166,7 @@ def proposal(
         made = read_proposal(views, methods, against, titles, letter)
         simulated = views.about().get("simulated") == "true"
         title = "; ".join(titles.values())
-        _write(store, "proposal", [made], name, title, out, simulated)
+        _write(store, "proposal", [made], name, title, out, simulated, views.about())
 
 
 def _write(
@@ -176,6 +177,7 @@ def _write(
     title: str,
     out: Path | None,
     simulated: bool,
+    about: dict[str, str],
 ) -> None:
     """Write a document whole, and print where; do nothing where nothing could be made.
 
@@ -187,6 +189,7 @@ def _write(
         title: of the document.
         out: the file, which ends in `.pdf`, or a folder.
         simulated: whether its boats are.
+        about: facts about the database.
     """
     if not pages:
         return
@@ -196,7 +199,15 @@ def _write(
 
     made_by = pages[0].get("made_by") or pages[0].get("code_version", "")
     footing = f"{tell('Made by code')} {made_by}"
-    content = make_pdf(template, pages, LANGUAGE.get(), title, simulated=simulated, footing=footing)
+    content = make_pdf(
+        template,
+        pages,
+        LANGUAGE.get(),
+        title,
+        simulated=simulated,
+        footing=footing,
+        about=about,
+    )
     usual = f"{name}.pdf"
     path = out or store.root / "documents" / usual
     if path.is_dir() or path.suffix.lower() != ".pdf":

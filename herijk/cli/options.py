@@ -115,6 +115,7 @@ def show(
     *,
     chosen: Mapping[str, str] | None = None,
     folded: bool = False,
+    about: Mapping[str, str] | None = None,
 ) -> None:
     """Print a document: as text for a person, or its data and statements as JSON for a program.
 
@@ -124,13 +125,14 @@ def show(
         fields: names of `data` that JSON has (docs/json.md).
         chosen: what selectors of the page say; rows of other choices are left out.
         folded: whether to show what is folded on a page.
+        about: facts about the database.
     """
     from dashboards.document import Document
     from dashboards.language import Language
 
     choices = dict(chosen or {})
     shown = {name: _choose_rows(value, choices) for name, value in data.items()}
-    document = Document(Language(LANGUAGE.get()), "", choices, pictures=False)
+    document = Document(Language(LANGUAGE.get(), about), "", choices, pictures=False)
     frame = dict.fromkeys(("path", "site_root", "other", "other_page", "code_version"), "")
     html = document.render(template, **{"simulated": False, "has_reports": False, **frame, **shown})
     if wants_json():
@@ -205,11 +207,13 @@ def show_results(
     with Views(store, as_of) as views:
         data = dict(query(Results(views)))
         edition = data.get("edition")
-        about_archive = views.about().get("simulated") == "true"
+        about = views.about()
+        about_archive = about.get("simulated") == "true"
         simulated = views.simulated(edition) if edition else about_archive
         chosen = data.get("chosen", {})
         choices = {name: chosen[name] for name in (chosen if follows is None else follows)}
-        show(template, {"simulated": simulated} | data, fields, chosen=choices, folded=folded)
+        shown = {"simulated": simulated} | data
+        show(template, shown, fields, chosen=choices, folded=folded, about=about)
 
 
 def show_files(files: Iterable[Path], said: str | None = None) -> None:

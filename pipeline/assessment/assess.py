@@ -26,6 +26,7 @@ from pipeline.assessment.comparisons import (
 from pipeline.assessment.currents import CANNOT_BE_TOLD, CHANGED
 from pipeline.assessment.run_measures import summarize_runs
 from pipeline.choice import SAME_SHARE
+from pipeline.crews import STANDARD_CREWS
 from pipeline.hull import BEAM_DRAUGHTS, GRAVITY_M_S2
 from pipeline.quantiles import MAD_TO_SD
 
@@ -68,6 +69,7 @@ def assess(
     tows: pl.DataFrame,
     diagnosis: pl.DataFrame,
     currents: pl.DataFrame,
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
 ) -> pl.DataFrame:
     """Return every check of every tow with what was observed and what it is compared with.
 
@@ -76,6 +78,7 @@ def assess(
         tows: `Tows.frame`, with what is expected of the water.
         diagnosis: rows of `season_diagnosis` of that method.
         currents: rows of `tow_currents` of that method.
+        crew_classes: the table of that name.
 
     Returns:
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
@@ -101,7 +104,7 @@ def assess(
     measured = measured.with_columns(
         by_half_a_step=HALF_STEP_RATIO, needed_depth_ratio=NEEDED_DEPTH_RATIO
     )
-    return apply_checks(measured, _widen_limit_of_ways(runs))
+    return apply_checks(measured, _widen_limit_of_ways(runs), crew_classes)
 
 
 def _widen_limit_of_ways(runs: pl.DataFrame) -> tuple[Check, ...]:
@@ -117,13 +120,18 @@ def _widen_limit_of_ways(runs: pl.DataFrame) -> tuple[Check, ...]:
     return tuple((CHECK | {widened.code: widened}).values())
 
 
-def apply_checks(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.DataFrame:
+def apply_checks(
+    tows: pl.DataFrame,
+    checks: Sequence[Check] = CHECKS,
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
+) -> pl.DataFrame:
     """Apply rules to what was measured of tows.
 
     Args:
         tows: a row per tow with all that the rules measure; those that have no `method`, without
             a row in its curves, are left out.
         checks: the rules.
+        crew_classes: the limits of each class.
 
     Returns:
         Rows of the table `assessments`; the limit is the one that is exceeded or nearest.
@@ -142,7 +150,7 @@ def apply_checks(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.Dat
         .filter(pl.col("method").is_not_null())
         .unpivot(index=index, variable_name="check", value_name="observed")
         .filter(x.is_finite())
-        .join(_list_limits(checks), on=["check", "crew_class"], maintain_order="left")
+        .join(_list_limits(checks, crew_classes), on=["check", "crew_class"], maintain_order="left")
         .filter(pl.col("season") <= pl.col("last_season").fill_null(pl.col("season")))
         .select(
             "method",
@@ -157,12 +165,12 @@ def apply_checks(tows: pl.DataFrame, checks: Sequence[Check] = CHECKS) -> pl.Dat
     )
 
 
-def _list_limits(checks: Sequence[Check]) -> pl.DataFrame:
+def _list_limits(checks: Sequence[Check], crew_classes: pl.DataFrame) -> pl.DataFrame:
     """Return the limits of each check for each class, with what else a check declares."""
     rows = []
     for check in checks:
-        for crew_class in ("H", "D"):
-            lowest, highest = check.limits(crew_class)
+        for crew_class in crew_classes["crew_class"]:
+            lowest, highest = check.limits(crew_class, crew_classes)
             row = {
                 "check": check.code,
                 "crew_class": crew_class,

@@ -11,14 +11,17 @@ looks. Most sound tows of some season exceed it (log 2), or the method already a
 that do not count), or it is a property of how the curve may be used.
 """
 
-from typing import Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
-from pipeline.history import SLOW_POWER_W, STEERED_STRAIGHT_FROM
+from pipeline.history import STEERED_STRAIGHT_FROM
 from pipeline.messages import Sentence, say
 from pipeline.tables.severity import Severity
 
-Limit: TypeAlias = float | dict[str, float] | None
-"""One number, one for each class (`H` men, `D` women), or no limit on this side."""
+if TYPE_CHECKING:
+    import polars as pl
+
+Limit: TypeAlias = float | str | None
+"""One number, a column of `crew_classes` with one for each class, or no limit on this side."""
 
 
 class Check(NamedTuple):
@@ -43,20 +46,28 @@ class Check(NamedTuple):
     severity: Severity = "look"
     last_season: int | None = None
 
-    def limits(self, crew_class: str) -> tuple[float | None, float | None]:
-        """Return the lowest and highest limit for a class."""
-        return _get_limit(self.lowest, crew_class), _get_limit(self.highest, crew_class)
+    def limits(
+        self, crew_class: str, crew_classes: "pl.DataFrame | None" = None
+    ) -> tuple[float | None, float | None]:
+        """Return the lowest and highest limit for a class, one of `crew_classes`.
+
+        Args:
+            crew_class: its code.
+            crew_classes: the table of that name; the default classes when left out.
+        """
+        lowest = _get_limit(self.lowest, crew_class, crew_classes)
+        return lowest, _get_limit(self.highest, crew_class, crew_classes)
 
 
-def _get_limit(limit: Limit, crew_class: str) -> float | None:
-    return limit[crew_class] if isinstance(limit, dict) else limit
+def _get_limit(limit: Limit, crew_class: str, crew_classes: "pl.DataFrame | None") -> float | None:
+    if not isinstance(limit, str):
+        return limit
+    from pipeline.crews import STANDARD_CREWS, get_limits  # noqa: PLC0415 - help needs no Polars
+
+    classes = STANDARD_CREWS if crew_classes is None else crew_classes
+    return get_limits(classes, limit)[crew_class]
 
 
-LOWEST_POWER_W: Final = {"H": 70.0, "D": 40.0}
-HIGHEST_POWER_W: Final = {"H": 90.0, "D": 55.0}
-"""Ends of the power per rower at a realistic tow speed."""
-LIGHTEST_ROWER_KG: Final = {"H": 81.0, "D": 64.0}
-HEAVIEST_ROWER_KG: Final = {"H": 114.0, "D": 90.0}
 MAX_WEIGHT_CHANGE: Final = 0.02
 MAX_FREEBOARD_CHANGE_M: Final = 0.03
 """Change of a boat since its previous tow, or on a race day, that is allowed: of weight as a ratio
@@ -135,19 +146,19 @@ CHECKS: Final = (
         "power_outside_range",
         "power_w",
         say("power outside range"),
-        LOWEST_POWER_W,
-        HIGHEST_POWER_W,
+        "lowest_power_w",
+        "highest_power_w",
         unit="W",
         severity="note",
     ),
-    Check("slow_tow", "power_w", say("slow tow"), SLOW_POWER_W, unit="W"),
+    Check("slow_tow", "power_w", say("slow tow"), "slow_power_w", unit="W"),
     # The boat of the day
     Check(
         "crew_weight",
         "crew_weight_kg / rowers",
         say("crew weight unusual"),
-        LIGHTEST_ROWER_KG,
-        HEAVIEST_ROWER_KG,
+        "lightest_rower_kg",
+        "heaviest_rower_kg",
         unit="kg",
     ),
     Check(

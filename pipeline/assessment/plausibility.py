@@ -26,6 +26,7 @@ from pipeline.assessment.tow_summary import (
     summarize_tows,
 )
 from pipeline.blocks.tows import Tows
+from pipeline.crews import STANDARD_CREWS
 from pipeline.messages import say
 from pipeline.tables.keys import LINE
 
@@ -152,17 +153,18 @@ class Shift:
         return self.quantity == "force" and abs(self.size) > GROSS
 
 
-def plausibility(tows: Tows) -> tuple[Shift, ...]:
+def plausibility(tows: Tows, crew_classes: pl.DataFrame = STANDARD_CREWS) -> tuple[Shift, ...]:
     """Judge every tow beside all others.
 
     Args:
         tows: all tows of the archive with their runs.
+        crew_classes: the table of that name.
 
     Returns:
         Shifts of force, wind and speed that the other tows rule out, the clearest first; then
         single tows that are only unusual.
     """
-    summary = summarize_tows(tows)
+    summary = summarize_tows(tows, crew_classes)
     shifts = list(_find_radians(summary))
     shifts += _find_turned_vanes(summary)
     shifts += _judge_force(summary)

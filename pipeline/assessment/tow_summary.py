@@ -14,8 +14,8 @@ import polars as pl
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks.run_blocks import WindowSums
 from pipeline.blocks.tows import Tows
+from pipeline.crews import STANDARD_CREWS, get_usual_power
 from pipeline.hull import AIR_DENSITY_KG_M3, front_area_m2
-from pipeline.races.race import ROWER_POWER_W
 
 MIDDLE_DRAG: Final = 0.6
 """Middle of the drag coefficients in use: good enough to take off most of the air."""
@@ -87,7 +87,7 @@ class TowSummary:
     wind_stands_still: BoolArray
 
 
-def summarize_tows(tows: Tows) -> TowSummary:
+def summarize_tows(tows: Tows, crew_classes: pl.DataFrame = STANDARD_CREWS) -> TowSummary:
     """Return what the selected runs of each tow show."""
     whole = WindowSums(tows.blocks, tows.blocks.n > 0)
     log_m_s = whole.mean("log1_v")
@@ -115,7 +115,7 @@ def summarize_tows(tows: Tows) -> TowSummary:
     return TowSummary(
         tows=tows,
         has_gps=np.isfinite(ln_gps),
-        level=level - by_gps - _expect_level(tows),
+        level=level - by_gps - _expect_level(tows, crew_classes),
         bend=bend - USUAL_BEND,
         bend_sd=bend_sd,
         force_n=tows.mean(whole.mean("force"), is_used),
@@ -166,7 +166,7 @@ def _fit_lines(
     return np.where(tows.any(is_used), level, np.nan), slope, RUN_SD / np.sqrt(safe_squares)
 
 
-def _expect_level(tows: Tows) -> FloatArray:
+def _expect_level(tows: Tows, crew_classes: pl.DataFrame) -> FloatArray:
     """Return ln Cw that size alone predicts, at the level that the archive's median power gives."""
     # Wetted surface follows half of ln(displacement x waterline length).
     displacement = tows.get_of_tows("weight_kg") + tows.get_of_tows("crew_weight_kg")
@@ -174,7 +174,8 @@ def _expect_level(tows: Tows) -> FloatArray:
     is_known = np.isfinite(ln_size)
     usual_ln_size = np.median(ln_size[is_known]) if is_known.any() else 0.0
     ln_size = np.where(is_known, ln_size, usual_ln_size)
-    power = np.array([ROWER_POWER_W[crew_class] for crew_class in tows.frame["crew_class"]])
+    usual_power_w = get_usual_power(crew_classes)
+    power = np.array([usual_power_w[crew_class] for crew_class in tows.frame["crew_class"]])
     by_power = np.log(
         power * tows.get_of_tows("rowers") / tows.get_of_tows("declared_speed_m_s") ** 3
     )

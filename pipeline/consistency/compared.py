@@ -16,15 +16,12 @@ from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, StrArray
 from pipeline.consistency.observed import TOW, is_within_curve
 from pipeline.consistency.types import CW, DIFFERENCES_THAT_MATTER, B, compare_types
-from pipeline.history import SLOW_POWER_W, STEERED_STRAIGHT_FROM
+from pipeline.crews import STANDARD_CREWS, get_limits
+from pipeline.history import STEERED_STRAIGHT_FROM
 from pipeline.quantiles import NORMAL
 from pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from pipeline.tables.consistency import ComparedTows
 from pipeline.tables.keys import LINE
-
-RACED_POWER_W: Final = {"H": 100.0, "D": 57.0}
-"""Power per rower in a race: "meer dan 100 Watt" (Cw-kromme, R. Pot 2015) for men; women's alike
-(inferred)."""
 
 MIDDLE_RATIO: Final = (0.67, 0.80)
 """Tow speed / hull speed: between these "the curve is relatively flat", below it the wave
@@ -41,6 +38,7 @@ def type_tables(
     repeat_pairs: pl.DataFrame,
     listed_races: pl.DataFrame,
     differences_that_matter: Mapping[str, float] = DIFFERENCES_THAT_MATTER,
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
 ) -> dict[str, pl.DataFrame]:
     """Return the tables of the comparison of boats of a type, by name, for all methods.
 
@@ -48,10 +46,11 @@ def type_tables(
         observed: rows of `observe`.
         repeat_pairs, listed_races: the tables of those names.
         differences_that_matter: ratio by quantity.
+        crew_classes: the table of that name.
     """
     results = compare_types(observed, repeat_pairs, differences_that_matter)
-    placed = place_beside_type(observed).hstack(
-        compare_with_races(observed, results.consistency, listed_races)
+    placed = place_beside_type(observed, crew_classes).hstack(
+        compare_with_races(observed, results.consistency, listed_races, crew_classes)
     )
     return {
         "compared_tows": mark_outside(observed, placed, results.deviations),
@@ -60,7 +59,7 @@ def type_tables(
     }
 
 
-def place_beside_type(observed: pl.DataFrame) -> pl.DataFrame:
+def place_beside_type(observed: pl.DataFrame, crew_classes: pl.DataFrame) -> pl.DataFrame:
     """Return the columns of `compared_tows` that follow from a tow and its type's speed."""
     cw = observed["cw_standard_kg_m"].to_numpy().astype(np.float64)
     cw_half = NORMAL * np.sqrt(observed["ln_cw_variance"].to_numpy())
@@ -89,13 +88,15 @@ def place_beside_type(observed: pl.DataFrame) -> pl.DataFrame:
     columns = pl.DataFrame(numbers).fill_nan(None).get_columns()
     return facts.with_columns(columns).with_columns(
         pl.Series("speed_case", name_speed_cases(tow_hull_ratio), pl.String),
-        pl.Series("slow", is_slow(observed), pl.Boolean),
+        pl.Series("slow", is_slow(observed, crew_classes), pl.Boolean),
     )
 
 
-def is_slow(table: pl.DataFrame) -> BoolArray:
+def is_slow(table: pl.DataFrame, crew_classes: pl.DataFrame) -> BoolArray:
     """Return whether each tow was made with less power per rower than its class's limit."""
-    limit = pl.col("crew_class").replace_strict(SLOW_POWER_W, return_dtype=pl.Float64)
+    limit = pl.col("crew_class").replace_strict(
+        get_limits(crew_classes, "slow_power_w"), return_dtype=pl.Float64
+    )
     return table.select((pl.col("power_w") < limit).fill_null(value=False)).to_series().to_numpy()
 
 
@@ -106,7 +107,10 @@ def name_speed_cases(tow_hull_ratio: FloatArray) -> StrArray:
 
 
 def compare_with_races(
-    observed: pl.DataFrame, consistency: pl.DataFrame, listed_races: pl.DataFrame
+    observed: pl.DataFrame,
+    consistency: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    crew_classes: pl.DataFrame,
 ) -> pl.DataFrame:
     """Return Cw of each curve at the fastest speed that its crew raced until its next tow.
 
@@ -117,6 +121,7 @@ def compare_with_races(
         observed: rows of `observe`.
         consistency: rows of `type_consistency`, for the bend of the type.
         listed_races: `race_date`, `distance_m`, `stream_m`, `rowing_time_s` and the line.
+        crew_classes: the table of that name.
 
     Returns:
         `races`, `raced_speed_m_s`, `raced_beyond_curve`, `raced_power_w`, `raced_high` and
@@ -145,7 +150,9 @@ def compare_with_races(
     power_ratio = np.where(has_both, type_left, np.nan) / np.where(has_both, own_left, 1.0)
 
     is_raced = np.isfinite(speed)
-    high_power = table["crew_class"].replace_strict(RACED_POWER_W, return_dtype=pl.Float64)
+    high_power = table["crew_class"].replace_strict(
+        get_limits(crew_classes, "raced_power_w"), return_dtype=pl.Float64
+    )
     return table.select(
         "races",
         "raced_speed_m_s",

@@ -441,13 +441,14 @@ def explain_by_weight(fitted: TypeModel) -> float | None:
 
 
 def compare_classes(fitted: TypeModel) -> Row:
-    """Return the quantity of women's crews / that of men's, at one weight of the boat."""
+    """Return the quantity of women's crews (D) / that of men's (H), at one weight of the boat."""
+    men = (fitted.tows["crew_class"] == "H").to_numpy()
     women = (fitted.tows["crew_class"] == "D").to_numpy()
-    counts: Row = {"n_men": int((~women).sum()), "n_women": int(women.sum())}
-    if women.all() or not women.any():
+    counts: Row = {"n_men": int(men.sum()), "n_women": int(women.sum())}
+    if not men.any() or not women.any():
         return counts
     classes = fitted.design.classes
-    contrast = classes[women].mean(axis=0) - classes[~women].mean(axis=0)
+    contrast = classes[women].mean(axis=0) - classes[men].mean(axis=0)
     (in_y,) = fitted.model.predict(contrast[None, :])
     ln_lo, ln_hi = sorted([fitted.ratio_per_y * in_y.lo, fitted.ratio_per_y * in_y.hi])
     women_ratio, lo, hi = np.exp([fitted.ratio_per_y * in_y.value, ln_lo, ln_hi]).tolist()

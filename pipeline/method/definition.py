@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable
 from typing import Any, Final, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
@@ -25,11 +25,22 @@ class RegisterRule(Declared):
     """How long a tow counts, and which of its estimates. It changes no curve.
 
     A tow counts until the end of its last calendar year; five years: FSN notice, January 2013.
+    Elsewhere it may count to the day.
+
+    Attributes:
+        six_years_from: the first season whose tows count six years; `"never"` for none.
+        counts_until: `same_day` for a tow that counts to the day, years later.
     """
 
     estimate: Literal["as_measured", "best_estimate"] = "as_measured"
     valid_years: int = Field(default=5, ge=1, le=20)
     six_years_from: int | None = Field(default=None, ge=1990, le=2100)
+    counts_until: Literal["same_day"] | None = None
+
+    @field_validator("six_years_from", mode="before")
+    @classmethod
+    def _read_never(cls, value: object) -> object:
+        return None if value == "never" else value
 
 
 class SeasonSteps(Declared):

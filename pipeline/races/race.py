@@ -13,10 +13,6 @@ from numpy.typing import ArrayLike
 from pipeline.arrays import FloatArray
 from pipeline.errors import MissingKnowledgeError
 
-ROWER_POWER_W: Final = {"H": 80.0, "D": 47.5}
-"""Power per rower at the declared speed: the middle of 70-90 and of 40-55 W (Sleepproef 2017,
-"Sleepsnelheid")."""
-
 FATIGUE_REFERENCE: Final = ((7200.0, 0.79), (10800.0, 0.77))
 """Race time [s] and mean power over it as a share of the reference: all that is published
 (presentation R. Pot, 24 January 2015, "Uitputtings-correctie")."""

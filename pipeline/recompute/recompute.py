@@ -16,6 +16,7 @@ import polars as pl
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray, StrArray
 from pipeline.blocks.run_blocks import RunBlocks
+from pipeline.crews import STANDARD_CREWS
 from pipeline.method.definition import Method
 from pipeline.recompute.anemometer import correct_anemometers
 from pipeline.recompute.computed import (
@@ -56,6 +57,7 @@ def recompute(
     blocks: RunBlocks,
     cache: RunCache | None = None,
     with_bands: bool = True,
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
 ) -> Recomputed:
     """Make the tables of all tows under a method.
 
@@ -65,6 +67,7 @@ def recompute(
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
         cache: what was found before of the same tows; added to.
         with_bands: make `curve_points`, a tenth of the work; without, it is empty.
+        crew_classes: the table of that name.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
@@ -72,7 +75,7 @@ def recompute(
     plan = Plan.from_method(method, tows, blocks, cache)
     estimated = estimate_season_factors(plan) if method.estimates_logs else None
     computed = evaluate(plan, None if estimated is None else estimated.tows)
-    return build_tables(method, computed, estimated, with_bands)
+    return build_tables(method, computed, estimated, with_bands, crew_classes)
 
 
 def estimate_season_factors(plan: Plan) -> SeasonFactors | None:

@@ -70,6 +70,7 @@ def build_tables(
     c: Computed,
     estimated: SeasonFactors | None,
     with_bands: bool,
+    crew_classes: pl.DataFrame,
 ) -> Recomputed:
     """Make the tables of a method; tows are assessed when all curves are there."""
     name = pl.lit(method.name).alias("method")
@@ -90,7 +91,7 @@ def build_tables(
     of_logs = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
     diagnosis = pl.concat([of_logs, diagnose_anemometers(c)]).sort("season", "part", "instrument")
     currents = estimate_currents(curves, run_points)
-    assessments = assess(curves, run_points, c.tows.frame, diagnosis, currents)
+    assessments = assess(curves, run_points, c.tows.frame, diagnosis, currents, crew_classes)
     links, instruments, weights = _make_tables_of_all_tows(estimated)
     rejecting: list[tuple[int, str]] = []
     for season in c.tows.frame["season"].unique().sort():

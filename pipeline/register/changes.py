@@ -13,9 +13,10 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
+from pipeline.crews import STANDARD_CREWS, get_usual_power
 from pipeline.curve import VALID_RATIO, cw
 from pipeline.races.power import find_line_curves, speed_at_power
-from pipeline.races.race import ROWER_POWER_W, power_per_rower_w
+from pipeline.races.race import power_per_rower_w
 from pipeline.register.causes import NO_FACTOR
 from pipeline.register.register import LINE
 from pipeline.tables.row import Row, pick_columns
@@ -26,6 +27,9 @@ same curve (docs/method-details.md, 11; inferred)."""
 
 RACE_S: Final = 7200.0
 """Duration of the race in which a change is expressed in seconds."""
+
+OTHER_POWER_W: Final = 70.0
+"""Power per rower at which boats of another federation's classes are ranked by speed."""
 
 SHOWN: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s", "rank", "tow_id")
 """Columns of both registers that stand beside each other in a comparison."""
@@ -146,8 +150,9 @@ def _find_filled_curves(pairs: pl.DataFrame, suffix: str) -> tuple[FloatArray, F
 def _rank(register: pl.DataFrame) -> pl.DataFrame:
     """Return lines with a curve, and their rank by speed at equal power within the class."""
     lines = register.drop_nulls("cw_kg_m").select(pl.col(LINE), pl.col(COMPARED))
-    power = (
-        lines["crew_class"].replace_strict(ROWER_POWER_W, return_dtype=pl.Float64) * lines["rowers"]
+    usual_power_w = get_usual_power(STANDARD_CREWS)
+    power = lines["rowers"] * lines["crew_class"].replace_strict(
+        usual_power_w, default=OTHER_POWER_W, return_dtype=pl.Float64
     )
     a, s = find_line_curves(lines)
     speed = pl.Series(speed_at_power(a, s, power.to_numpy()))

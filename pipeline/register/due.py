@@ -10,7 +10,7 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.assessment.checks import HIGHEST_POWER_W, LOWEST_POWER_W
+from pipeline.crews import STANDARD_CREWS, get_limits
 from pipeline.curve import VALID_RATIO
 from pipeline.races.power import find_line_curves, speed_at_power
 from pipeline.races.race import mean_speed_m_s, power_per_rower_w
@@ -29,7 +29,11 @@ NOTHING_KNOWN = "nothing_known"
 
 
 def due_list(
-    register: pl.DataFrame, boats: pl.DataFrame, results: pl.DataFrame, as_of: dt.date
+    register: pl.DataFrame,
+    boats: pl.DataFrame,
+    results: pl.DataFrame,
+    as_of: dt.date,
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
 ) -> pl.DataFrame:
     """Return every boat and crew with the day its tow expires and the speed of its next tow.
 
@@ -46,6 +50,7 @@ def due_list(
         boats: `fsn_no`, `boat_type`.
         results: races with `race_date`, `distance_m`, `stream_m`, `rowing_time_s` and the line.
         as_of: the day on which is looked.
+        crew_classes: the table of that name.
 
     Returns:
         Per line `as_of`, `status`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`,
@@ -62,7 +67,7 @@ def due_list(
         .sort(LINE)
     )
     own = lines.filter(pl.col("a_kg_m").is_not_null())
-    known = _add_realistic_speeds(own).with_columns(_find_speed_of_own_curve())
+    known = _add_realistic_speeds(own, crew_classes).with_columns(_find_speed_of_own_curve())
     without = _find_speed_of_like_boats(lines.join(own, on=LINE, how="anti"), known)
     low = pl.col("declared_speed_m_s") * VALID_RATIO[0]
     high = pl.col("declared_speed_m_s") * VALID_RATIO[1]
@@ -98,13 +103,15 @@ def _find_raced_speeds(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
     return raced.group_by(CREW, maintain_order=True).agg(pl.col("raced_speed_m_s").max())
 
 
-def _add_realistic_speeds(lines: pl.DataFrame) -> pl.DataFrame:
+def _add_realistic_speeds(lines: pl.DataFrame, crew_classes: pl.DataFrame) -> pl.DataFrame:
     """Add the power at the declared speed, and both ends of the realistic range of speeds."""
     a, s = find_line_curves(lines)
     rowers = lines["rowers"].to_numpy()
     crew_class = lines["crew_class"]
-    lowest_w = crew_class.replace_strict(LOWEST_POWER_W, return_dtype=pl.Float64).to_numpy()
-    highest_w = crew_class.replace_strict(HIGHEST_POWER_W, return_dtype=pl.Float64).to_numpy()
+    lowest = get_limits(crew_classes, "lowest_power_w")
+    highest = get_limits(crew_classes, "highest_power_w")
+    lowest_w = crew_class.replace_strict(lowest, return_dtype=pl.Float64).to_numpy()
+    highest_w = crew_class.replace_strict(highest, return_dtype=pl.Float64).to_numpy()
     power = power_per_rower_w(lines["cw_kg_m"], lines["declared_speed_m_s"], rowers)
     return lines.with_columns(
         power_w=pl.Series(power),

@@ -94,11 +94,16 @@ def choose_default_method(names: Sequence[str]) -> str:
 
 
 def valid_until(tow_date: pl.Expr, rule: RegisterRule) -> pl.Expr:
-    """Return the last day on which a tow counts: the end of its last calendar year."""
+    """Return the last day on which a tow counts: the end of its last calendar year, or to the day.
+
+    Years after 29 February it is 28 February.
+    """
     year = tow_date.dt.year()
     years = pl.lit(rule.valid_years)
     if rule.six_years_from is not None:
         years = pl.when(year >= rule.six_years_from).then(6).otherwise(years)
+    if rule.counts_until == "same_day":
+        return tow_date.dt.offset_by(pl.format("{}y", years))
     return pl.date(year + years, 12, 31)
 
 

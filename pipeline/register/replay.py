@@ -12,8 +12,9 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
+from pipeline.crews import STANDARD_CREWS, TIME_ON_TIME, get_usual_power
 from pipeline.curve import VALID_RATIO, cw
-from pipeline.races.power import find_line_curves
+from pipeline.races.power import find_line_curves, speed_at_power
 from pipeline.races.race import fatigue_factor, mean_speed_m_s, power_per_rower_w
 from pipeline.register.register import LINE, NO_EMPTY_THWART
 
@@ -46,7 +47,12 @@ class RaceRules:
     fatigue: Fatigue = "extend"
 
 
-def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.DataFrame:
+def replay(
+    lines: pl.DataFrame,
+    results: pl.DataFrame,
+    rules: RaceRules,
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
+) -> pl.DataFrame:
     """Return the power and rank of every result under the lines that counted on its day.
 
     Args:
@@ -55,11 +61,13 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
         results: `race`, `race_date`, `LINE` (the thwart null where it is not given), `distance_m`,
             `rowing_time_s`, `stream_m`, `penalty_w` (watt per rower, taken off).
         rules: how they are computed.
+        crew_classes: the handicap of each class, and the power that it takes.
 
     Returns:
         The results, sorted by race, class and rank. Added are `tow_id` and `declared_cw_kg_m` (Cw
         at the declared speed) of the line that counted, `speed_m_s`, `cw_kg_m`, `fatigue_factor`,
-        `power_w` (per rower, corrected, less the penalty) and `rank` within the race and class.
+        `power_w` (per rower, corrected, less the penalty), `corrected_time_s` (null unless the
+        handicap of the class is one of time) and `rank` within the race and class.
         `remark` says why there is no power (`not_in_register`, `no_line_that_day`,
         `thwart_not_given`, `speed_not_below_b`), or that the speed lies outside 85-115 % of the
         declared one, where the curve does not hold (`beyond_curve`); else it is empty.
@@ -81,8 +89,11 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     low, high = VALID_RATIO[0] * declared, VALID_RATIO[1] * declared
     beyond = (speed < low) | (speed > high)
     without = rowed["without"].to_numpy()
+    corrected_s = _correct_times(rowed, through_water, crew_classes)
     remark = np.select([~has_line, ~sound, beyond], [without, ABOVE_B, BEYOND_CURVE], "")
-    rank = pl.col("power_w").rank("min", descending=True).over(CLASSIFICATION).cast(pl.Int32)
+    by_power = pl.col("power_w").rank("min", descending=True).over(CLASSIFICATION)
+    by_time = pl.col("corrected_time_s").rank("min").over(CLASSIFICATION)
+    rank = pl.when(_is_timed(crew_classes)).then(by_time).otherwise(by_power).cast(pl.Int32)
     return (
         rowed.drop("without", "tow_date", "valid_until", "declared_speed_m_s")
         .rename({"cw_kg_m": "declared_cw_kg_m"})
@@ -91,6 +102,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
             pl.Series("fatigue_factor", fatigue),
             pl.Series("cw_kg_m", np.where(sound, resistance, np.nan)).fill_nan(None),
             pl.Series("power_w", np.where(sound, power - penalty, np.nan)).fill_nan(None),
+            pl.Series("corrected_time_s", corrected_s).fill_nan(None),
             pl.Series("remark", remark, pl.String),
         )
         .with_columns(rank.alias("rank"))
@@ -154,13 +166,14 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         old, new: `replay` of the same results under two registers.
 
     Returns:
-        Per result `old_power_w`, `new_power_w`, `old_remark`, `new_remark`, `old_rank`, `new_rank`,
-        and whether it is on the podium in one of the two only (`podium_changed`); the last three
-        are null where a register has no power.
+        Per result `old_power_w`, `new_power_w`, `old_corrected_time_s`, `new_corrected_time_s`,
+        `old_remark`, `new_remark`, `old_rank`, `new_rank`, and whether it is on the podium in one
+        of the two only (`podium_changed`); the last three are null where a register has no power.
     """
     before, after = _rank_under_both(old, new), _rank_under_both(new, old)
-    pairs = before.select(pl.col(RESULT), "power_w", "rank", "remark").join(
-        after.select(pl.col(RESULT), "empty_thwart", "power_w", "rank", "remark"),
+    compared = ("power_w", "corrected_time_s", "rank", "remark")
+    pairs = before.select(pl.col(RESULT), pl.col(compared)).join(
+        after.select(pl.col(RESULT), "empty_thwart", pl.col(compared)),
         on=RESULT,
         suffix="_new",
         maintain_order="left",
@@ -172,6 +185,8 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         "rowing_time_s",
         pl.col("power_w").alias("old_power_w"),
         pl.col("power_w_new").alias("new_power_w"),
+        pl.col("corrected_time_s").alias("old_corrected_time_s"),
+        pl.col("corrected_time_s_new").alias("new_corrected_time_s"),
         pl.col("remark").alias("old_remark"),
         pl.col("remark_new").alias("new_remark"),
         pl.col("rank").alias("old_rank"),
@@ -181,8 +196,8 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
 
 
 def _rank_under_both(results: pl.DataFrame, others: pl.DataFrame) -> pl.DataFrame:
-    """Rank results among those that have a power in `others` too; null for the rest."""
-    both = others.drop_nulls("power_w").select(pl.col(RESULT), shared=pl.lit(True))
+    """Rank results among those that have a rank in `others` too; null for the rest."""
+    both = others.drop_nulls("rank").select(pl.col(RESULT), shared=pl.lit(True))
     placed = results.join(both, on=RESULT, how="left", maintain_order="left")
     among = pl.when(pl.col("shared")).then("rank")
     rank = among.rank("min").over(CLASSIFICATION).cast(pl.Int32)
@@ -238,7 +253,9 @@ def _estimate_chances(
 
     Power is proportional to Cw, and the error of Cw at the declared speed is taken for that at the
     speed rowed: sound within the range in which a curve is valid. A penalty does not follow Cw.
+    Of classes that race on corrected time it is not known.
     """
+    results = results.filter(pl.col("corrected_time_s").is_null())
     if members.is_empty():
         schema = {name: results.schema[name] for name in CLASSIFICATION}
         return pl.DataFrame(schema=schema | {"change_probability": pl.Float64()})
@@ -258,6 +275,39 @@ def _estimate_chances(
         .group_by(CLASSIFICATION, maintain_order=True)
         .agg((pl.col("crew") != pl.col("old")).mean().alias("change_probability"))
     )
+
+
+def _is_timed(crew_classes: pl.DataFrame) -> pl.Expr:
+    """Return whether the class of a result races on corrected time."""
+    timed = crew_classes.filter(handicap=TIME_ON_TIME)["crew_class"].to_list()
+    return pl.col("crew_class").is_in(timed)
+
+
+def _correct_times(
+    results: pl.DataFrame, through_water_m: pl.Series, crew_classes: pl.DataFrame
+) -> FloatArray:
+    """Return race times corrected by the speed of each boat [s]; NaN where power decides.
+
+    The speed is the one at which each rower of the crew gives the usual power of its class, by the
+    boat's own curve; a penalty [W] comes on top of that power. The boat that is fastest by it, in
+    its race and class, keeps its time; the time of another is multiplied by its speed over that of
+    the fastest. What the current carried a boat is taken off as in the other handicap.
+    """
+    usual_power_w = get_usual_power(crew_classes)
+    power_w = results["crew_class"].replace_strict(usual_power_w, return_dtype=pl.Float64)
+    power_w = (power_w + results["penalty_w"].fill_null(0.0)) * results["rowers"]
+    a, s = find_line_curves(results)
+    has_line = np.isfinite(a) & np.isfinite(s)
+    speed = speed_at_power(
+        np.where(has_line, a, 1.0), np.where(has_line, s, 0.0), power_w.to_numpy()
+    )
+    seconds = results["rowing_time_s"] * results["distance_m"] / through_water_m
+    timed = results.with_columns(
+        seconds=seconds, speed=pl.Series(np.where(has_line, speed, np.nan)).fill_nan(None)
+    )
+    allowance = pl.col("speed") / pl.col("speed").max().over(CLASSIFICATION)
+    corrected = pl.when(_is_timed(crew_classes)).then(pl.col("seconds") * allowance)
+    return timed.select(corrected.cast(pl.Float64)).to_series().to_numpy()
 
 
 def _compute_fatigue(results: pl.DataFrame, rules: RaceRules) -> FloatArray:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import polars as pl
 
+from pipeline.crews import STANDARD_CREWS
 from pipeline.method.definition import Method, find_method_in_force
 from pipeline.register.causes import assign_steps
 from pipeline.register.changes import compare_lines
@@ -117,6 +118,7 @@ def year_winners(
     results: pl.DataFrame,
     members: pl.DataFrame,
     methods: Sequence[Method],
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
 ) -> pl.DataFrame:
     """Return who won every race by the register of its time, and who would have by each method.
 
@@ -125,6 +127,7 @@ def year_winners(
         results: rows of `listed_races`.
         members: rows of the table `ensemble`.
         methods: the methods that were applied.
+        crew_classes: the table of that name.
 
     Returns:
         Rows of the table `year_winners`.
@@ -134,7 +137,7 @@ def year_winners(
     replayed = {}
     for method in methods:
         lines = history.filter(edition=name_draft(method.name))
-        replayed[method.name] = replay(lines, results, RaceRules())
+        replayed[method.name] = replay(lines, results, RaceRules(), crew_classes)
     published = {season: published_method(season, methods).name for season in seasons}
     found: list[pl.DataFrame] = [YearWinners.create_empty()]
     if seasons:

@@ -9,8 +9,8 @@ class About(dy.Schema):
 
     key = column.text(
         "simulated: made by a simulator, or measured; code_version: of the code that made it; "
-        "publisher, licence: as the archive declares them; objections_to, objections_until, "
-        "objection_grounds: as beheer.toml says",
+        "publisher, licence, crew_names, languages: as the archive declares them; objections_to, "
+        "objections_until, objection_grounds: as beheer.toml says",
         primary_key=True,
     )
     value = column.text("its value")

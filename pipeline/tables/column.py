@@ -15,6 +15,10 @@ LOWER_END: Final = (
 """Description of the lower end of an interval of Cw or B."""
 
 
+CREW_CLASS: Final = "^[A-Z][A-Z0-9]{0,2}$"
+"""What the code of a class looks like: `8H` is a crew of eight."""
+
+
 def text(description: str, **rules: Any) -> dy.String:
     """Declare a text."""
     return dy.String(description=description, **rules)
@@ -73,7 +77,9 @@ method: Final = partial(text, "name of the method that made the row")
 season: Final = partial(dy.Int32, description="year of the tow list", min=1990, max=2100)
 run: Final = partial(dy.Int8, description="run", min=1, max=40)
 rowers: Final = partial(dy.Int32, description="rowers the curve is valid for", min=1, max=30)
-crew_class: Final = partial(text, "H men, D women", regex="^[HD]$")
+crew_class: Final = partial(
+    text, "class of the crew: H men, D women, or what the archive declares", regex=CREW_CLASS
+)
 empty_thwart: Final = partial(
     text, "thwart that must be left free; empty text where all are manned"
 )

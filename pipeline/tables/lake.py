@@ -15,7 +15,23 @@ class AboutArchive(dy.Schema):
     simulated = column.flag("made by a simulator")
     publisher = column.text("who publishes what is made from it", nullable=True)
     licence = column.text("its licence: an SPDX name or a web address", nullable=True)
+    crew_names = column.text("names of its own classes of crews, as JSON", nullable=True)
+    languages = column.text("languages of the site, where not Dutch and English", nullable=True)
     root = column.text("the folder")
+
+
+class CrewClasses(dy.Schema):
+    """Classes of crews, with the limits that power and weight are held to; see `pipeline.crews`."""
+
+    crew_class = column.crew_class(primary_key=True)
+    name = column.text("what the people of the class are called")
+    lowest_power_w = column.number("lower end of the realistic power per rower", min_exclusive=0)
+    highest_power_w = column.number("upper end", min_exclusive=0)
+    slow_power_w = column.optional("power under which a tow is too slow")
+    raced_power_w = column.optional("power that a race takes at least")
+    lightest_rower_kg = column.optional("weight of a rower, the lightest")
+    heaviest_rower_kg = column.optional("the heaviest")
+    handicap = column.text("formula by which its races are ranked")
 
 
 class Faults(Fault):
@@ -85,6 +101,7 @@ class ListedFiles(dy.Schema):
     """Every file that was looked at."""
 
     path = column.text("file, relative to the archive", primary_key=True)
+    kind = column.text("what it is, as `[files]` of archief.toml calls it, or profile")
     sha256 = column.sha256("its content hash")
     size_bytes = dy.Int64(description="its size", min=0)
 

@@ -134,6 +134,10 @@ class RaceChanges(dy.Schema):
     rowing_time_s = column.number("time rowed", min_exclusive=0)
     old_power_w = column.optional("power per rower by the old edition")
     new_power_w = column.optional("the same by the new one")
+    old_corrected_time_s = column.optional(
+        "time rowed, corrected by the old edition; empty where power decides"
+    )
+    new_corrected_time_s = column.optional("the same by the new one")
     old_remark = column.text(REMARK, nullable=True)
     new_remark = column.text("the same by the new one", nullable=True)
     old_rank = dy.Int32(description=PLACE, nullable=True)

@@ -60,9 +60,11 @@ def test_an_edge_is_a_table_that_is_read():
     assert read("era_shifts") == {"repeat_pairs", "boats"}
     assert read("type_consistency") == {
         *("curves", "run_points", "tows", "boats", "repeat_pairs", "listed_races"),
-        "differences_that_matter",
+        *("differences_that_matter", "crew_classes"),
     }
-    assert read("race_changes") == {"register_changes", "register_history", "listed_races"}
+    assert read("race_changes") == {
+        *("register_changes", "register_history", "listed_races", "crew_classes")
+    }
     assert read("blocks") == {"samples"}
     assert read("samples") == {"listed_tows", "listed_runs", "season_profiles"}
 

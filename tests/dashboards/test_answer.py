@@ -111,7 +111,7 @@ def race(first_s, new_ranks):
     rows = [("Look", first_s, 1, new_ranks[0]), ("Vlet", 7400.0, 2, new_ranks[1])]
     schema = ("name", "rowing_time_s", "old_rank", "new_rank")
     frame = pl.DataFrame(rows, schema=schema, orient="row").with_columns(
-        crew_class=pl.lit("H"), old_power_w=1.0, new_power_w=1.0
+        crew_class=pl.lit("H"), old_power_w=1.0, new_power_w=1.0, new_corrected_time_s=None
     )
     return call("race_parts", "winners", [sum_up_class(frame, None)])
 
@@ -138,6 +138,22 @@ def slope(verdict, value, low, high):
     return str(get_template("type_parts.html.j2").make_module(names).slope(row, "weight"))
 
 
+def test_of_a_race_on_corrected_time_nothing_is_said_of_fatigue():
+    frame = pl.DataFrame(
+        {
+            "name": ["A", "B"], "crew_class": "H", "rowing_time_s": 3600.0,
+            "old_power_w": 70.0, "new_power_w": 70.0, "old_rank": [1, 2], "new_rank": [2, 1],
+        }
+    )  # fmt: skip
+    by_power = sum_up_class(frame.with_columns(new_corrected_time_s=None), None)
+    by_time = sum_up_class(frame.with_columns(new_corrected_time_s=3500.0), None)
+    kinds = [
+        [kind for kind, _ in call("race_parts", "winners", [found])]
+        for found in (by_power, by_time)
+    ]
+    assert kinds == [["winner another", "fatigue"], ["winner another"]]
+
+
 def of_many():
     """What is said in each case that is about more than one boat."""
     for exceeds in ([None, None], [False, None], [True, False]):
@@ -147,7 +163,7 @@ def of_many():
     ranked = {
         "name": ["A", "B", "C"], "crew_class": "H", "rowing_time_s": 7300.0,
         "old_power_w": [70.0, None, 60.0], "new_power_w": [69.0, 80.0, 61.0],
-        "old_rank": [1, None, 2], "new_rank": [1, None, 2],
+        "old_rank": [1, None, 2], "new_rank": [1, None, 2], "new_corrected_time_s": None,
     }  # fmt: skip
     found = call("race_parts", "winners", [sum_up_class(pl.DataFrame(ranked), 0.1)])
     yield "a race", "one not placed", found

@@ -5,6 +5,7 @@ import datetime as dt
 import polars as pl
 import pytest
 
+from pipeline.crews import STANDARD_CREWS
 from pipeline.register.due import IN_RANGE as REALISTIC
 from pipeline.register.due import (
     LIKE_BOATS,
@@ -53,7 +54,7 @@ def line(fsn_no, declared, crew_class="H", a=A, b=B):
     }
 
 
-def due(*lines, raced=(), types=()):
+def due(*lines, raced=(), types=(), crew_classes=STANDARD_CREWS):
     register = pl.DataFrame(
         list(lines),
         schema_overrides={"rowers": pl.Int32, "a_kg_m": pl.Float64, "b_m_s": pl.Float64},
@@ -72,7 +73,10 @@ def due(*lines, raced=(), types=()):
         schema=RACES,
         orient="row",
     )
-    return {r["fsn_no"]: r for r in due_list(register, boats, races, AS_OF).iter_rows(named=True)}
+    return {
+        r["fsn_no"]: r
+        for r in due_list(register, boats, races, AS_OF, crew_classes).iter_rows(named=True)
+    }
 
 
 @pytest.mark.parametrize(
@@ -110,3 +114,13 @@ def test_a_boat_without_a_curve_gets_the_middle_of_like_boats():
     assert found["Y"]["speed_reason"] == LIKE_BOATS
     assert found["Y"]["tow_speed_m_s"] == pytest.approx(middle)
     assert (found["Z"]["tow_speed_m_s"], found["Z"]["speed_reason"]) == (None, NOTHING_KNOWN)
+
+
+def test_the_range_of_another_federation_is_that_of_its_classes():
+    mixed = STANDARD_CREWS.head(1).with_columns(
+        crew_class=pl.lit("X"), lowest_power_w=50.0, highest_power_w=60.0
+    )
+    found = due(line("FSN1", 2.35, "X"), crew_classes=mixed)["FSN1"]
+    assert found["speed_reason"] == TOO_FAST
+    assert power(found["lowest_speed_m_s"]) == pytest.approx(50.0)
+    assert power(found["tow_speed_m_s"]) == pytest.approx(60.0)

@@ -89,6 +89,32 @@ def test_a_tow_is_valid_to_the_end_of_the_fifth_or_sixth_calendar_year(
     assert (line["valid_until"], line["status"]) == (dt.date(until, 12, 31), status)
 
 
+@pytest.mark.parametrize(
+    ("tow_date", "until"),
+    [
+        (dt.date(2015, 3, 1), dt.date(2018, 3, 1)),
+        (dt.date(2016, 2, 29), dt.date(2019, 2, 28)),
+    ],
+)
+def test_elsewhere_a_tow_counts_to_the_day(tow_date, until):
+    rule = RegisterRule(valid_years=3, counts_until="same_day")
+    rows = [("t", tow_date, "FSN1", 8, "H", "accepted")]
+    for day, status in ((until, "valid"), (until + dt.timedelta(days=1), "expired")):
+        line = register(rows, day, rule=rule).filter(fsn_no="FSN1").row(0, named=True)
+        assert (line["valid_until"], line["status"]) == (until, status)
+
+
+def test_a_method_drops_the_exception_of_the_one_that_it_extends():
+    head = 'name = "own"\ntitle = "own"\nextends = "rebased"\n[register]\nvalid_years = 3\n'
+    kept, dropped = (
+        parse_method(head + line, "x.toml").validity for line in ("", 'six_years_from = "never"\n')
+    )
+    assert kept.six_years_from == 2023
+    assert dropped == RegisterRule(valid_years=3)
+    own = parse_method(head + 'counts_until = "same_day"\n', "x.toml")
+    assert parse_method(write_method_text(own), "x.toml").validity == own.validity
+
+
 def test_a_tow_with_a_thwart_left_free_is_a_line_of_its_own():
     """Sleepproef 2017, "Bemanning": its curve holds only with that thwart free."""
     rows = [*ROWS[:2], ("t7", dt.date(2015, 3, 1), "FSN1", 8, "H", "accepted", "3")]

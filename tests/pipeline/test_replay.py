@@ -6,6 +6,7 @@ import numpy as np
 import polars as pl
 import pytest
 
+from pipeline.crews import STANDARD_CREWS, TIME_ON_TIME
 from pipeline.curve import cw, s_of_b
 from pipeline.errors import MissingKnowledgeError
 from pipeline.register.replay import RaceRules, compare_winners, race_changes, replay
@@ -232,3 +233,63 @@ def test_where_nothing_can_be_counted_nothing_is_said():
     found = winners_of(both.filter(fsn_no="X"), both.filter(fsn_no="Y"), of_y, rows)
     said = ("old_winner", "new_winner", "winner_changed", "change_probability")
     assert [found[name] for name in said] == [None, None, False, None]
+
+
+TIMED = STANDARD_CREWS.with_columns(handicap=pl.lit(TIME_ON_TIME))
+"""Classes that race on corrected time; the usual power of a man is 80 W."""
+
+
+def find_speed(a, power_w):
+    """Speed at a power per rower of eight, of a boat whose Cw is A at every speed."""
+    return (8 * power_w / a) ** (1 / 3)
+
+
+def test_corrected_time_is_the_time_rowed_times_the_speed_of_the_boat_over_that_of_the_fastest():
+    lines = register(("FAST", 30.0, None), ("SLOW", 45.0, None))
+    found = replay(lines, results(("FAST", 7200), ("SLOW", 7800)), PLAIN, TIMED)
+    allowance = find_speed(45.0, 80.0) / find_speed(30.0, 80.0)
+    corrected = dict(found.select("fsn_no", "corrected_time_s").rows())
+    assert corrected == pytest.approx({"FAST": 7200.0, "SLOW": 7800.0 * allowance})
+    assert dict(found.select("fsn_no", "rank").rows()) == {"SLOW": 1, "FAST": 2}
+
+
+def test_current_and_penalty_come_off_the_corrected_time():
+    lines = register(("X", 30.0, None), ("Y", 30.0, None))
+    rows = results(("X", 7200), ("Y", 7200, 920.0, 8.0))
+    corrected = dict(replay(lines, rows, PLAIN, TIMED).select("fsn_no", "corrected_time_s").rows())
+    by_penalty = find_speed(30.0, 80.0) / find_speed(30.0, 88.0)
+    assert corrected["X"] == pytest.approx(7200 * by_penalty)
+    assert corrected["Y"] == pytest.approx(7200 / 0.95)
+
+
+def test_only_the_classes_with_that_handicap_race_on_corrected_time():
+    only_women = TIMED.filter(crew_class="D")
+    classes = pl.concat([STANDARD_CREWS.filter(crew_class="H"), only_women])
+    lines = register(("X", 30.0, 5.0))
+    both = pl.concat([lines, lines.with_columns(crew_class=pl.lit("D"))])
+    rows = results(("X", 7200))
+    rows = pl.concat([rows, rows.with_columns(crew_class=pl.lit("D"))])
+    found = replay(both, rows, PLAIN, classes)
+    timed = dict(found.select("crew_class", pl.col("corrected_time_s").is_not_null()).rows())
+    assert timed == {"H": False, "D": True}
+    assert found["rank"].to_list() == [1, 1]
+
+
+def test_a_new_register_changes_places_on_corrected_time_and_gives_no_chance():
+    rows = results(("X", 7200), ("Y", 7300))
+    old = replay(register(("X", 30.0, None), ("Y", 30.0, None)), rows, PLAIN, TIMED)
+    new = replay(register(("X", 30.0, None), ("Y", 36.0, None)), rows, PLAIN, TIMED)
+    changes = race_changes(old, new)
+    moved = changes.select("fsn_no", "old_rank", "new_rank").rows()
+    assert sorted(moved) == [("X", 1, 2), ("Y", 2, 1)]
+    assert changes["old_corrected_time_s"].sort().to_list() == [7200.0, 7300.0]
+    members = pl.DataFrame({"tow_id": ["t"], "member": [0], "cw_kg_m": [30.0]})
+    winners = compare_winners(old, new, members).row(0, named=True)
+    assert (winners["old_winner"], winners["new_winner"]) == ("X", "Y")
+    assert winners["change_probability"] is None
+
+
+def test_a_boat_without_a_line_has_no_corrected_time():
+    found = replay(register(("X", 30.0, None)), results(("X", 7200), ("Z", 7000)), PLAIN, TIMED)
+    row = found.filter(fsn_no="Z").row(0, named=True)
+    assert (row["corrected_time_s"], row["rank"], row["remark"]) == (None, None, "not_in_register")

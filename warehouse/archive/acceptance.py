@@ -41,7 +41,6 @@ from warehouse.archive.profile import Profiles, read_profiles
 from warehouse.archive.workbooks import TYPED_AS_TEXT
 from warehouse.store.files import sync, write_beside
 
-NEW_LIST: Final = "sleeplijsten/beoordelingen.csv"
 _UTF16_MARKS: Final = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
 
 
@@ -157,13 +156,14 @@ def compose_line(root: Path, acceptance: Acceptance) -> NewLine:
     """
     profiles = read_profiles(root)
     columns = profiles.rename_columns(ACCEPTANCES.columns)
-    files = list_files(root)
+    files = list_files(root, profiles)
     lists = [file for file in files if file.kind == ACCEPTANCES]
     if len(lists) > 1:
         named = ", ".join(file.path for file in lists)
         raise MissingKnowledgeError("there are several lists of acceptances: {}. Keep one", named)
     if not lists:
-        path, target, before = NEW_LIST, root / NEW_LIST, None
+        path = f"{profiles.find_place(ACCEPTANCES)}.csv"
+        target, before = root / path, None
         layout = _choose_layout(files, acceptance.towed_on.year, profiles)
     else:
         path, target = lists[0].path, lists[0].full_path.resolve()
@@ -207,7 +207,7 @@ def _choose_layout(files: Sequence[ArchiveFile], season: int, profiles: Profiles
             content = read_bytes(file.full_path, LIST_MAX_BYTES)
             found = _find_layout(content, profiles.rename_columns(TOWS.columns))
             delimiter, line_end = found.delimiter, found.line_end
-    header = delimiter.join(column.named for column in ACCEPTANCES.columns)
+    header = delimiter.join(column.named for column in profiles.rename_columns(ACCEPTANCES.columns))
     return _Layout(header, 0, delimiter, "utf-8", line_end)
 
 

@@ -125,7 +125,7 @@ def _check_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
         of_one_run.update(paths.split(PARTS))
     for paths in index.tows.filter(pl.col("second_runs").is_not_null())["second_path"]:
         of_one_run.update(paths.split(PARTS))
-    for file in list_files(root):
+    for file in list_files(root, index.profiles):
         if file.kind != SAMPLES or not file.inside or file.path in not_listed:
             continue
         profile = index.profiles.find(file.season)

@@ -1,13 +1,15 @@
 """An empty archive to begin with: folders, spreadsheets that check what is filled in, a page."""
 
+import datetime as dt
 from pathlib import Path
 from typing import Final
 
 from pipeline.errors import MissingKnowledgeError
 from pipeline.tables.declare import dy
+from pipeline.toml_text import decode_toml
 from warehouse.archive.columns import Column
-from warehouse.archive.kinds import BOATS, TOWS, ListKind
-from warehouse.archive.profile import PROFILE_FILE
+from warehouse.archive.kinds import BOATS, LIST_KINDS, TOWS, ListKind
+from warehouse.archive.profile import PROFILE_FILE, Profiles, parse_profiles
 
 FOLDERS: Final = ("sloepregister", "sleeplijsten", "meetdata_2025", "wedstrijden")
 MOST_ROWS: Final = 500
@@ -82,17 +84,29 @@ EXAMPLE_TOW: Final = {
     "rowers": 8, "crew_class": "H", "declared_speed_m_s": 2.45, "weight_kg": 980,
     "crew_weight_kg": 760, "water_temperature_c": 8.5, "use_runs": "1-6", "altered": "nee",
 }  # fmt: skip
-_CHOICES: Final = {"crew_class": ["H", "D"], "altered": ["ja", "nee"]}
+DUTCH: Final = ("Kan dit kloppen?", "Verwacht wordt {:g} tot {:g}.")
+ENGLISH: Final = ("Can this be right?", "{:g} to {:g} is expected.")
+"""Title and text of what a spreadsheet says of a number outside its limits."""
+YES_OR_NO: Final = ("ja", "nee")
 
 
-def write_templates(root: Path) -> None:
+def write_templates(root: Path, profile: Path | None = None) -> None:
     """Make an empty archive.
 
+    Args:
+        root: its folder.
+        profile: an `archief.toml`, with whose names of files, columns and classes it is made; it
+            is copied. Without one the archive is that of the Dutch federation.
+
     Raises:
-        MissingKnowledgeError: there is something in the folder already.
+        MissingKnowledgeError: there is something in the folder already, or the profile cannot be
+            understood.
     """
     if root.exists() and any(root.iterdir()):
         raise MissingKnowledgeError("{} is not empty; name a folder that is new", root)
+    if profile is not None:
+        _write_own_templates(root, profile)
+        return
     for folder in FOLDERS:
         (root / folder).mkdir(parents=True, exist_ok=True)
     (root / "LEESMIJ.md").write_text(README, encoding="utf-8")
@@ -101,30 +115,56 @@ def write_templates(root: Path) -> None:
     _write_list(root / "sleeplijsten/sleeplijst_2025.xlsx", TOWS, EXAMPLE_TOW)
 
 
-def _write_list(path: Path, kind: ListKind, example: dict[str, object]) -> None:
+def _write_own_templates(root: Path, profile: Path) -> None:
+    """Make an empty archive with the names of a profile; its lists have no example."""
+    try:
+        text = decode_toml(profile.read_bytes())
+    except (OSError, ValueError) as error:
+        raise MissingKnowledgeError("{} cannot be read: {}", profile, error) from error
+    profiles = parse_profiles(text)
+    year = str(dt.date.today().year)
+    (root / profiles.samples_place.replace("{year}", year)).mkdir(parents=True)
+    for kind in LIST_KINDS:
+        path = root / f"{profiles.find_place(kind).replace('{year}', year)}.xlsx"
+        is_needed = kind in (BOATS, TOWS)
+        if is_needed or kind.name in profiles.files:
+            path.parent.mkdir(exist_ok=True)
+        if is_needed:
+            _write_list(path, kind, {}, profiles)
+    (root / PROFILE_FILE).write_text(text, encoding="utf-8")
+
+
+def _write_list(
+    path: Path, kind: ListKind, example: dict[str, object], profiles: Profiles | None = None
+) -> None:
     """Write a spreadsheet with a header, an example, and a check on each column with limits."""
+    known = profiles or Profiles()
     import xlsxwriter  # type: ignore[import-untyped]  # noqa: PLC0415 - only here
 
     with xlsxwriter.Workbook(str(path)) as book:
         sheet = book.add_worksheet("lijst")
         bold = book.add_format({"bold": True, "bottom": 1})
         sheet.freeze_panes(1, 0)
-        for place, column in enumerate(kind.columns):
+        for place, column in enumerate(known.rename_columns(kind.columns)):
             sheet.set_column(place, place, max(10, len(column.named) + 2))
             sheet.write(0, place, column.named, bold)
             sheet.write(1, place, example.get(column.key, ""))
-            rule = _rule(column, kind.table)
+            rule = _rule(column, kind.table, known)
             if rule is not None:
                 sheet.data_validation(1, place, MOST_ROWS, place, rule)
 
 
-def _rule(column: Column, table: type[dy.Schema]) -> dict[str, object] | None:
+def _rule(column: Column, table: type[dy.Schema], profiles: Profiles) -> dict[str, object] | None:
     """Return the rule of a spreadsheet for a column: the limits that its table declares."""
-    if column.key in _CHOICES:
-        return {"validate": "list", "source": _CHOICES[column.key]}
+    if column.key == "crew_class":
+        return {"validate": "list", "source": profiles.crew_classes["crew_class"].to_list()}
+    if column.key == "altered":
+        own = [word for word, meant in profiles.words.items() if meant in YES_OR_NO]
+        return {"validate": "list", "source": own or list(YES_OR_NO)}
     declared = table.columns().get(column.key)
     if not isinstance(declared, dy.Float64 | dy.Int32) or column.dimension == "ratio":
         return None
+    title, message = DUTCH if profiles == Profiles() else ENGLISH
     lowest, highest = declared.min, declared.max
     if lowest is None or highest is None:
         return None
@@ -133,6 +173,6 @@ def _rule(column: Column, table: type[dy.Schema]) -> dict[str, object] | None:
         "criteria": "between",
         "minimum": lowest,
         "maximum": highest,
-        "error_title": "Kan dit kloppen?",
-        "error_message": f"Verwacht wordt {lowest:g} tot {highest:g}.",
+        "error_title": title,
+        "error_message": message.format(lowest, highest),
     }

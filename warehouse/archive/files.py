@@ -21,7 +21,7 @@ from pipeline.messages import say
 from warehouse.archive.columns import fold_word
 from warehouse.archive.faults import DefectiveFileError
 from warehouse.archive.kinds import LIST_KINDS, ListKind
-from warehouse.archive.profile import PROFILE_FILE
+from warehouse.archive.profile import PROFILE_FILE, Profiles, make_pattern
 from warehouse.store.files import file_sha256, write_beside
 
 SAMPLES: Final = "samples"
@@ -48,7 +48,10 @@ hash is not remembered; git calls such an index entry racy."""
 _NOT_OURS: Final = re.compile(
     r"\..*|~\$.*|thumbs\.db|desktop\.ini|readme.*|leesmij.*", re.IGNORECASE
 )
-_SAMPLES_FOLDER: Final = re.compile(r"meetdata_([0-9]{4})")
+
+
+Places = list[tuple[ListKind, str, re.Pattern[str]]]
+"""Of each kind of list its folder, and the pattern of its name."""
 
 
 @dataclass(frozen=True)
@@ -70,22 +73,26 @@ class ArchiveFile:
     inside: bool
 
 
-def list_files(root: Path) -> list[ArchiveFile]:
+def list_files(root: Path, profiles: Profiles) -> list[ArchiveFile]:
     """Return the files of an archive, and the folders that nobody reads, by their path.
 
-    Lists are `<folder>/<name>_<jaar>`; samples are `meetdata_<jaar>/<meetfile>`.
+    Lists are `<folder>/<name>_<jaar>`; samples are `meetdata_<jaar>/<meetfile>`, unless the profile
+    names them otherwise.
     """
-    list_folders = {kind.folder for kind in LIST_KINDS}
+    lists: Places = []
+    for known in LIST_KINDS:
+        folder, _, name = profiles.find_place(known).partition("/")
+        lists.append((known, folder, make_pattern(name)))
+    samples = make_pattern(profiles.samples_place)
+    list_folders = {folder for _, folder, _ in lists}
     found = []
     for entry in _list_entries(root):
-        is_read = entry.is_dir() and (
-            entry.name in list_folders or _SAMPLES_FOLDER.fullmatch(entry.name)
-        )
+        is_read = entry.is_dir() and (entry.name in list_folders or samples.fullmatch(entry.name))
         for file in _list_entries(entry) if is_read else [entry]:
             name = file.relative_to(root).as_posix()
             path = os.fsencode(name).decode(errors="replace")
             is_text = path == name  # or else bytes that are no text
-            kind, season = _find_kind(root, file) if is_text else ("", 0)
+            kind, season = _find_kind(root, file, lists, samples) if is_text else ("", 0)
             inside = _is_inside(root, file)
             found.append(
                 ArchiveFile(path=path, full_path=file, kind=kind, season=season, inside=inside)
@@ -97,18 +104,20 @@ def _list_entries(folder: Path) -> list[Path]:
     return [entry for entry in folder.iterdir() if not _NOT_OURS.fullmatch(entry.name)]
 
 
-def _find_kind(root: Path, entry: Path) -> tuple[ListKind | str, int]:
+def _find_kind(
+    root: Path, entry: Path, lists: Places, samples_folder: re.Pattern[str]
+) -> tuple[ListKind | str, int]:
     """Return the kind of an entry and its season; empty and 0 where nobody reads it."""
     if entry.parent == root:
         return (PROFILE_FILE if entry.name == PROFILE_FILE else ""), 0
     if entry.is_dir():
         return "", 0
-    if samples := _SAMPLES_FOLDER.fullmatch(entry.parent.name):
-        return (SAMPLES if find_sample_suffix(entry.name) else ""), int(samples[1])
-    for kind in LIST_KINDS if entry.suffix.lower() in LIST_SUFFIXES else ():
-        match = re.fullmatch(kind.pattern, entry.stem, re.IGNORECASE)
-        if match and kind.folder == entry.parent.name:
-            return kind, int(match[1] or 0)
+    if samples := samples_folder.fullmatch(entry.parent.name):
+        return (SAMPLES if find_sample_suffix(entry.name) else ""), int(samples["year"])
+    for kind, folder, name in lists if entry.suffix.lower() in LIST_SUFFIXES else ():
+        match = name.fullmatch(entry.stem)
+        if match and folder == entry.parent.name:
+            return kind, int(match.groupdict().get("year") or 0)
     return "", 0
 
 

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
 
 import polars as pl
 
@@ -22,7 +21,7 @@ from warehouse.archive.files import (
     list_files,
     make_outside_archive_error,
 )
-from warehouse.archive.kinds import ACCEPTANCES, BOATS, FORCE_CHECKS, LAMPS, TOWS
+from warehouse.archive.kinds import ACCEPTANCES, BOATS, FORCE_CHECKS, LAMPS, TOWS, ListKind
 from warehouse.archive.list_rules import (
     check_hand_windows,
     find_recordings,
@@ -36,9 +35,6 @@ from warehouse.archive.list_rules import (
 from warehouse.archive.lists import read_lists
 from warehouse.archive.profile import PROFILE_FILE, Profiles, read_profiles
 from warehouse.archive.tows import check_tows, index_samples, name_run_files, plan_runs
-
-BOATS_FILE: Final = "sloepregister/sloependata.csv"
-TOWS_FILE: Final = "sleeplijsten/sleeplijst_<jaar>.csv"
 
 
 @dataclass(frozen=True)
@@ -80,8 +76,8 @@ def index_archive(
     Raises:
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
-    files = list_archive_files(root)
     profiles = profiles or read_profiles(root)
+    files = list_archive_files(root, profiles)
     hashes, unread = hash_files(files, hash_file)
     boats = read_boats(files, profiles)
     rows = read_lists(files, TOWS, profiles)
@@ -111,7 +107,10 @@ def index_archive(
         faults += _find_idle_settings(profiles, listed)
     told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
     faults += [fault_from(error, error.path) for error in unread if error.path not in told]
-    file_rows = [(path, sha256, size) for path, (sha256, size) in sorted(hashes.items())]
+    kinds = {file.path: _name_kind(file) for file in files}
+    file_rows = [
+        (path, kinds[path], sha256, size) for path, (sha256, size) in sorted(hashes.items())
+    ]
     return ArchiveIndex(
         boats=boats.listed,
         tows=tows,
@@ -124,7 +123,7 @@ def index_archive(
     )
 
 
-def list_archive_files(root: Path) -> list[ArchiveFile]:
+def list_archive_files(root: Path, profiles: Profiles | None = None) -> list[ArchiveFile]:
     """Return the files of an archive, which has at least a list of boats and one of tows.
 
     Raises:
@@ -135,18 +134,34 @@ def list_archive_files(root: Path) -> list[ArchiveFile]:
             "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
             "meetdata_<jaar>/.",
             root,
-            BOATS_FILE,
+            _name_file(BOATS, Profiles()),
         )
-    files = list_files(root)
+    known = profiles or read_profiles(root)
+    files = list_files(root, known)
     kinds = [file.kind for file in files]
     missing = None
     if BOATS not in kinds:
-        missing = say("there is no list of boats: {path} is expected.", path=BOATS_FILE)
+        missing = say(
+            "there is no list of boats: {path} is expected.", path=_name_file(BOATS, known)
+        )
     elif TOWS not in kinds:
-        missing = say("there is no list of tows: {path} is expected.", path=TOWS_FILE)
+        path = _name_file(TOWS, known)
+        missing = say("there is no list of tows: {path} is expected.", path=path)
     if missing is not None:
         raise MissingKnowledgeError("The archive at {} cannot be read: {}", root, missing)
     return files
+
+
+def _name_kind(file: ArchiveFile) -> str:
+    """Return what a file is: a kind of list by its name, samples, or the profile."""
+    if isinstance(file.kind, ListKind):
+        return file.kind.name
+    return "profile" if file.kind == PROFILE_FILE else file.kind
+
+
+def _name_file(kind: ListKind, profiles: Profiles) -> str:
+    """Return where a list is looked for, as people read it."""
+    return profiles.find_place(kind).replace("{year}", "<jaar>") + ".csv"
 
 
 def _find_unread_files(files: Iterable[ArchiveFile], profiles: Profiles) -> list[Fault]:

@@ -1,7 +1,7 @@
 """The lists of an archive: where each lies, its columns, and the table that declares its limits."""
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 from pipeline.tables.declare import dy
 from pipeline.tables.keys import MAX_THWARTS
@@ -20,6 +20,14 @@ from warehouse.archive.columns import Column
 REMARK: Final = "remark"
 """A column that is not read: whatever is in it."""
 
+FileKind = Literal[
+    "boats", "tows", "samples", "windows", "force_checks", "lamps", "acceptances", "registers",
+    "races",
+]  # fmt: skip
+"""Kinds of files, as `[files]` of `archief.toml` calls them."""
+SAMPLES_PLACE: Final = "meetdata_{year}"
+"""Folder of the samples of a season, unless `[files]` says otherwise."""
+
 READ_APART: Final = frozenset({"file", "second_file", "use_runs", REMARK})
 """Columns that the table of a list does not hold: they become other columns or runs."""
 
@@ -29,8 +37,9 @@ class ListKind:
     """A kind of list.
 
     Attributes:
-        folder: its folder.
-        pattern: its name there without suffix; group 1 is the season.
+        name: what `[files]` of `archief.toml` calls it.
+        place: its folder and name without suffix, unless `[files]` says otherwise; `{year}` stands
+            for the season, and `{name}` for whatever its writer likes.
         reason_code: what a bad value in it is called.
         table: declares the type and the limits of its values.
         columns: the columns to look for.
@@ -39,8 +48,8 @@ class ListKind:
             an empty cell would say something else, as that a boat was not altered.
     """
 
-    folder: str
-    pattern: str
+    name: FileKind
+    place: str
     reason_code: str
     table: type[dy.Schema]
     columns: tuple[Column, ...]
@@ -109,8 +118,8 @@ _OPTIONAL_CREW: Final = (
     Column("crew_class", "klasse", required=False),
 )
 BOATS: Final = ListKind(
-    folder="sloepregister",
-    pattern="sloependata()",
+    name="boats",
+    place="sloepregister/sloependata",
     reason_code="bad_boat_row",
     table=ListedBoats,
     columns=_NAMES_OF_BOAT + _SIZES + _OPTIONAL_CREW,
@@ -153,8 +162,8 @@ _FOR_INSPECTION: Final = _THWARTS + _RUDDER + _PHOTOS
 """What an inspection at a race uses and no computation (Sleepproef, R. Pot 2017, "Opmetingen en
 keuring")."""
 TOWS: Final = ListKind(
-    folder="sleeplijsten",
-    pattern="sleeplijst_([0-9]{4})",
+    name="tows",
+    place="sleeplijsten/sleeplijst_{year}",
     reason_code="bad_list_row",
     table=ListedTows,
     columns=_TOW
@@ -176,15 +185,15 @@ TOWS: Final = ListKind(
     | {column.key for column in _THWARTS + _RUDDER},
 )  # fmt: skip
 WINDOWS: Final = ListKind(
-    folder="sleeplijsten",
-    pattern="vensters_([0-9]{4})",
+    name="windows",
+    place="sleeplijsten/vensters_{year}",
     reason_code="bad_window_row",
     table=WrittenWindows,
     columns=_RUN_SECONDS + (Column("reason", "reden", required=False),),
 )
 FORCE_CHECKS: Final = ListKind(
-    folder="sleeplijsten",
-    pattern="krachtijkingen_([0-9]{4})",
+    name="force_checks",
+    place="sleeplijsten/krachtijkingen_{year}",
     reason_code="bad_instrument_row",
     table=ListedForceChecks,
     columns=(
@@ -196,16 +205,16 @@ FORCE_CHECKS: Final = ListKind(
 """The load cell read while a known weight hung on it, daily or more often (Sleepproef, R. Pot 2017,
 "Krachtopnemer")."""
 LAMPS: Final = ListKind(
-    folder="sleeplijsten",
-    pattern="lampjes_([0-9]{4})",
+    name="lamps",
+    place="sleeplijsten/lampjes_{year}",
     reason_code="bad_instrument_row",
     table=ListedLamps,
     columns=_RUN_SECONDS,
 )
 """When a lamp beside the beacon burned because the tow line was not square ("Recht sturen")."""
 ACCEPTANCES: Final = ListKind(
-    folder="sleeplijsten",
-    pattern="beoordelingen()",
+    name="acceptances",
+    place="sleeplijsten/beoordelingen",
     reason_code="bad_acceptance_row",
     table=ListedAcceptances,
     columns=(
@@ -227,8 +236,8 @@ _CURVE: Final = (
     _THWART,
 )
 REGISTERS: Final = ListKind(
-    folder="sloepregister",
-    pattern="sloepregister_([0-9]{4})",
+    name="registers",
+    place="sloepregister/sloepregister_{year}",
     reason_code="bad_register_row",
     table=PrintedLines,
     columns=(_BOAT,) + _CREW + _CURVE,
@@ -245,8 +254,8 @@ _RESULT: Final = (
     _THWART,
 )
 RACES: Final = ListKind(
-    folder="wedstrijden",
-    pattern=".+_([0-9]{4})",
+    name="races",
+    place="wedstrijden/{name}_{year}",
     reason_code="bad_race_row",
     table=ListedRaces,
     columns=_RACE + (_BOAT,) + _CREW + _RESULT,

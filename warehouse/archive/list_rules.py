@@ -250,7 +250,7 @@ def read_within_border(
     try:
         return read(own)
     except BaseException as error:
-        fault = fault_from(error, own[0].path if own else kind.folder)
+        fault = fault_from(error, own[0].path if own else kind.name)
         nothing, _ = read([])
         return nothing, [fault]
 
@@ -347,8 +347,8 @@ def _read_with_boats(
     root: Path, kind: ListKind, check: Callable[[Rows], None], profiles: Profiles | None
 ) -> _Read:
     """Read the lists of a kind in which each row is about a boat."""
-    files = list_files(root)
     known = read_profiles(root) if profiles is None else profiles
+    files = list_files(root, known)
     boats = read_boats(files, known)
 
     def read(own: Iterable[ArchiveFile]) -> _Read:

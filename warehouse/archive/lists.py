@@ -59,7 +59,7 @@ DID_NOT_FINISH: Final = "uitgevallen"
 """Instead of a rowing time: no result, and no fault."""
 _YES: Final = ("ja", "x", "1")
 _NO: Final = ("nee", "0")
-_BOAT: Final = r"^(?i:fsn)?[\s._-]*([0-9]{1,6}[a-zA-Z]?)$"
+_BOAT: Final = r"^(?i:{})?[\s._-]*([0-9]{{1,6}}[a-zA-Z]?)$"
 _RUN: Final = r"^[bB]?([1-9][0-9]?)$"
 _RUN_RANGE: Final = re.compile(r"(b?)([0-9]{1,2})-b?([0-9]{1,2})")
 _TIME: Final = r"^([0-9]{1,2}):([0-5]?[0-9]):([0-5]?[0-9])$"
@@ -114,7 +114,7 @@ def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles)
                 renamed = table._replace(header=header)
                 places = _find_places(renamed, columns, profiles)
                 _check_columns(renamed, columns, places, profiles)
-                found.add(_parse_rows(renamed, file, kind, places, profiles.meaning))
+                found.add(_parse_rows(renamed, file, kind, places, profiles))
             except BaseException as error:
                 found.faults.append(fault_from(error, file.path))
                 found.unread.add(file.path)
@@ -304,14 +304,14 @@ def _parse_rows(
     file: ArchiveFile,
     kind: ListKind,
     places: Mapping[str, FoundColumn],
-    words: Mapping[str, str],
+    profiles: Profiles,
 ) -> Rows:
     """Return the values of a table, by the types that its kind of list declares.
 
     Every cell that is wrong leaves a fault; a row is set aside unless the kind can spare the cell.
     """
     keys = kind.keys
-    frame = _collect_cells(table, places, words, kind)
+    frame = _collect_cells(table, places, profiles.meaning, kind)
     needed = []
     for column in kind.columns:
         declared = find_declared_column(kind, column.key)
@@ -319,7 +319,9 @@ def _parse_rows(
             needed.append(column.key)
     shown = pl.col(needed).replace({MERGED: None})
     is_fragment = pl.sum_horizontal(shown.is_null()) * 2 > len(needed)
-    about = _parse_cell(kind, kind.about, places) if kind.about else pl.lit(None, pl.String)
+    about = (
+        _parse_cell(kind, kind.about, places, profiles) if kind.about else pl.lit(None, pl.String)
+    )
     rows = Rows(
         kind,
         frame.with_columns(
@@ -350,13 +352,13 @@ def _parse_rows(
     mark = _find_decimal_mark(rows.frame, places, is_text)
     is_kept = every["line"].is_in(rows.frame["line"].implode()).to_numpy()
     every = every.with_columns(
-        _parse_cell(kind, key, places).alias(_VALUE.format(key)) for key in keys
+        _parse_cell(kind, key, places, profiles).alias(_VALUE.format(key)) for key in keys
     )
     rows.frame = every.filter(is_kept)
     is_lost = _note_empty(rows, every, needed, places)
     values = {}
     for column in kind.columns:
-        checks = _list_checks(kind, column, places, mark, is_text)
+        checks = _list_checks(kind, column, places, mark, is_text, profiles)
         is_wrong_cell = _note_wrong_cells(rows, every, is_kept, column.key, checks)
         if column.key not in kind.spare:
             is_lost |= is_wrong_cell
@@ -487,6 +489,7 @@ def _list_checks(
     places: Mapping[str, FoundColumn],
     mark: str,
     is_text: bool,
+    profiles: Profiles,
 ) -> list[Check]:
     """Return the checks of the cells of a column, in order."""
     text, value = pl.col(column.key), pl.col(_VALUE.format(column.key))
@@ -512,7 +515,11 @@ def _list_checks(
     if declared is None:
         return checks
     is_unread = text.is_not_null() & value.is_null()
-    checks.append(Check(is_unread, _describe_wrong_cell(column.key, declared.dtype), named))
+    said = _describe_wrong_cell(column.key, declared.dtype)
+    if column.key == "crew_class" and profiles.crew:
+        said = _NO_OWN_CLASS
+        named["classes"] = ", ".join(crew.code for crew in profiles.crew)
+    checks.append(Check(is_unread, said, named))
     if _is_number(kind, column.key):
         is_double, said = _find_double_numbers(text, mark, is_text)
         checks.append(Check(is_double, said, named | {"mark": mark}, "ambiguous_number"))
@@ -551,6 +558,7 @@ def _find_double_numbers(text: pl.Expr, mark: str, is_text: bool) -> tuple[pl.Ex
 
 
 _NO_CLASS: Final = say("column '{column}' is '{cell}'; H or D is expected.")
+_NO_OWN_CLASS: Final = say("column '{column}' is '{cell}'; one of {classes} is expected.")
 _NO_YES: Final = say("column '{column}' is '{cell}', not ja, nee or empty.")
 _NO_TIME: Final = say(
     "column '{column}' is '{cell}', not a time such as 2:10:25. A word for a crew that did not "
@@ -560,7 +568,7 @@ _NO_SECONDS: Final = say(
     "column '{column}' is '{cell}', not a number of seconds since the first sample of the run or, "
     "where all runs are in one recording, of the recording."
 )
-ASKED_WORDS: Final = (_NO_CLASS, _NO_YES, _NO_TIME)
+ASKED_WORDS: Final = (_NO_CLASS, _NO_OWN_CLASS, _NO_YES, _NO_TIME)
 """What is said of a cell whose word can be given a meaning."""
 
 
@@ -600,10 +608,16 @@ def split_runs(written: str) -> list[str]:
 # The value of a cell of text, null where it has none
 
 
-def _parse_cell(kind: ListKind, key: str, places: Mapping[str, FoundColumn]) -> pl.Expr:
+def _parse_cell(
+    kind: ListKind, key: str, places: Mapping[str, FoundColumn], profiles: Profiles
+) -> pl.Expr:
     """Return the value of a column, by its name or by the type that its table declares."""
     text, declared = pl.col(key), find_declared_column(kind, key)
     by_type = {pl.Boolean: _parse_yes_or_no, pl.Date: _parse_date}
+    if key == "fsn_no":
+        return _parse_boat(text, profiles.number_prefix)
+    if key == "crew_class":
+        return _parse_crew_class(text, profiles.crew_classes["crew_class"])
     if key in _BY_KEY:
         return _BY_KEY[key](text)
     if declared is None or declared.dtype == pl.String():
@@ -613,9 +627,10 @@ def _parse_cell(kind: ListKind, key: str, places: Mapping[str, FoundColumn]) -> 
     return _parse_number(text, places.get(key), declared.dtype.is_integer())
 
 
-def _parse_boat(text: pl.Expr) -> pl.Expr:
-    """Return the number of a boat: `FSN 101`, `fsn101` and `101` are FSN101."""
-    return pl.coalesce("FSN" + text.str.extract(_BOAT).str.to_uppercase(), text)
+def _parse_boat(text: pl.Expr, prefix: str) -> pl.Expr:
+    """Return the number of a boat: with prefix FSN `FSN 101`, `fsn101` and `101` are FSN101."""
+    number = text.str.extract(_BOAT.format(prefix)).str.to_uppercase()
+    return pl.coalesce(prefix + number, text)
 
 
 def _parse_tow_id(text: pl.Expr) -> pl.Expr:
@@ -623,9 +638,9 @@ def _parse_tow_id(text: pl.Expr) -> pl.Expr:
     return text.str.replace_all("/", "-", literal=True)
 
 
-def _parse_crew_class(text: pl.Expr) -> pl.Expr:
-    letter = text.str.to_uppercase()
-    return pl.when(letter.is_in(["H", "D"])).then(letter)
+def _parse_crew_class(text: pl.Expr, classes: pl.Series) -> pl.Expr:
+    code = text.str.to_uppercase()
+    return pl.when(code.is_in(classes.implode())).then(code)
 
 
 def _parse_run(text: pl.Expr) -> pl.Expr:
@@ -668,9 +683,7 @@ def _parse_number(text: pl.Expr, place: FoundColumn | None, is_whole: bool) -> p
 
 
 _BY_KEY: Final[Mapping[str, Callable[[pl.Expr], pl.Expr]]] = {
-    "fsn_no": _parse_boat,
     "tow_id": _parse_tow_id,
-    "crew_class": _parse_crew_class,
     "run": _parse_run,
     "rowing_time_s": _parse_rowing_time,
 }

@@ -1,12 +1,15 @@
 """`archief.toml`: what differs in this archive, and the plan of its runs."""
 
 import datetime as dt
+import itertools
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Final, Literal, Self
 
+import polars as pl
 from pydantic import (
     AfterValidator,
     BaseModel,
@@ -25,10 +28,13 @@ from pipeline.channels import (
     RUN_SECONDS,
     TARGET_SPEED_RATIOS,
 )
+from pipeline.crews import CREW_SCHEMA, POWER_PER_ROWER, STANDARD_CREWS
 from pipeline.errors import MissingKnowledgeError
 from pipeline.messages import say
+from pipeline.tables.column import CREW_CLASS
 from pipeline.toml_text import decode_toml, describe_problem, parse_toml
 from warehouse.archive.columns import UNITS, Column, find_unit, fold, fold_word, split_header
+from warehouse.archive.kinds import LIST_KINDS, SAMPLES_PLACE, FileKind, ListKind
 
 PROFILE_FILE: Final = "archief.toml"
 SAMPLE_COLUMNS: Final = (
@@ -52,6 +58,8 @@ MAY_BE_ABSENT: Final = {
 _DIMENSIONS: Final = {column.key: column.dimension for column in SAMPLE_COLUMNS}
 Channel = Literal["run", "log1", "log2", "gps", "force", "wind_speed", "wind_angle", "time"]
 _WAYS: Final = {"out": OUT, "back": BACK}
+OF_NO_SEASON: Final = ("boats", "acceptances")
+"""Kinds of files of which an archive has one list for all seasons."""
 RUN_FILES: Final = "{meetfile} run {run}"
 RUN_PLACE: Final = r"\{run(?::0?([1-9]))?\}"
 """Where the number of a run stands in the name of its file; `{run:02}` is one of two digits."""
@@ -129,6 +137,12 @@ def _parse_directions(value: object) -> object:
     return list(map(_WAYS.__getitem__, value))
 
 
+def _refuse_descending_range(ends: tuple[float, float]) -> tuple[float, float]:
+    if ends[0] >= ends[1]:
+        raise ValueError("a range is its lower end, then its upper end")
+    return ends
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
@@ -140,7 +154,17 @@ _Directions = Annotated[
     BeforeValidator(_parse_directions),
     Field(min_length=FEWEST_RUNS, max_length=MOST_RUNS),
 ]
+_Number = Annotated[float, Field(gt=0, strict=False)]
+_Range = Annotated[
+    tuple[_Number, _Number], Field(strict=False), AfterValidator(_refuse_descending_range)
+]
 _Folded = Annotated[list[str], AfterValidator(lambda names: [fold(name) for name in names])]
+
+
+def make_pattern(place: str) -> re.Pattern[str]:
+    """Return the pattern of a folder or name; its group `year` is the season, where it has one."""
+    text = re.escape(place).replace(r"\{name\}", ".+").replace(r"\{year\}", "(?P<year>[0-9]{4})", 1)
+    return re.compile(text, re.IGNORECASE)
 
 
 class SetAside(_Strict):
@@ -257,6 +281,41 @@ class Plan(_Strict):
 STANDARD: Final = Plan.model_construct()
 
 
+class CrewClass(_Strict):
+    """One `[[crew]]`: a class of crews, and what its power and weight are held to.
+
+    Attributes:
+        code: as lists have it.
+        name: what its people are called.
+        power_w: range of the power per rower at a realistic tow speed.
+        slow_w: power under which a tow is too slow; without it no tow is.
+        race_w: power that a race takes at least; without it none is looked for.
+        rower_kg: range of the weight of a rower; without it no crew is too light or too heavy.
+    """
+
+    code: Annotated[str, Field(pattern=CREW_CLASS)]
+    name: _Text
+    power_w: _Range
+    slow_w: _Number | None = None
+    race_w: _Number | None = None
+    rower_kg: _Range | None = None
+
+    def to_row(self, handicap: str) -> dict[str, object]:
+        """Return the class as a row of `crew_classes`."""
+        lightest, heaviest = self.rower_kg or (None, None)
+        return {
+            "crew_class": self.code,
+            "name": self.name,
+            "lowest_power_w": self.power_w[0],
+            "highest_power_w": self.power_w[1],
+            "slow_power_w": self.slow_w,
+            "raced_power_w": self.race_w,
+            "lightest_rower_kg": lightest,
+            "heaviest_rower_kg": heaviest,
+            "handicap": handicap,
+        }
+
+
 class Publication(_Strict):
     """Who publishes what is made from the archive, and what others may do with it."""
 
@@ -275,6 +334,11 @@ class Profiles(_Strict):
         words: the value that a word in a cell stands for; empty text for nothing.
         headers: the name of a column in `docs/archive.md`, by the name that lists have for it.
         ignore: names of columns of lists, and of files, that are known and not used.
+        languages: of the site; the pages of the first lie at its root.
+        number_prefix: stands before the number of a boat, also where a list leaves it out.
+        crew: the classes of crews; without any, those of the Dutch federation.
+        handicap: formula by which races are ranked.
+        files: folder and name of each kind of file that has others than `docs/archive.md` says.
         set_aside: days whose tows are not used.
         log_replaced: days from which another log was on board.
     """
@@ -286,6 +350,11 @@ class Profiles(_Strict):
     words: dict[str, str] = {}
     headers: dict[str, str] = {}
     ignore: _Folded = []
+    languages: Annotated[list[Literal["nl", "en"]], Field(min_length=1)] = ["nl", "en"]
+    number_prefix: Annotated[str, Field(pattern="^[A-Z]*$")] = "FSN"
+    crew: list[CrewClass] = []
+    handicap: Literal["power_per_rower", "time_on_time"] = POWER_PER_ROWER
+    files: dict[FileKind, _Text] = {}
     set_aside: list[SetAside] = []
     log_replaced: list[LogReplaced] = []
 
@@ -297,6 +366,47 @@ class Profiles(_Strict):
                 if season <= min(one.seasons[1], other.seasons[1]):
                     one.merge(other, season)
         return self
+
+    @model_validator(mode="after")
+    def _files_can_be_told_apart(self) -> Self:
+        for kind, place in self.files.items():
+            parts = place.count("/") + 1
+            if parts != (1 if kind == "samples" else 2):
+                raise ValueError(
+                    f"files.{kind}: '{place}' is not a folder" + (" and a name") * (parts == 1)
+                )
+            if ("{year}" in place) == (kind in OF_NO_SEASON):
+                need = "must not" if kind in OF_NO_SEASON else "must"
+                raise ValueError(f"files.{kind}: '{place}' {need} have {{year}} in it")
+        for one, other in itertools.permutations(LIST_KINDS, 2):
+            place = self.find_place(other)
+            file = place.replace("{year}", "2000").replace("{name}", "name")
+            if make_pattern(self.find_place(one)).fullmatch(file):
+                raise ValueError(f"files: '{place}' can be {one.name} and {other.name}")
+        return self
+
+    @model_validator(mode="after")
+    def _classes_differ(self) -> Self:
+        codes = [crew.code for crew in self.crew]
+        if len(codes) > len(set(codes)):
+            raise ValueError("two [[crew]] have one code")
+        return self
+
+    def find_place(self, kind: ListKind) -> str:
+        """Return folder and name of a kind of list, with `{year}` for the season."""
+        return self.files.get(kind.name, kind.place)
+
+    @property
+    def samples_place(self) -> str:
+        """Folder of the samples of a season, with `{year}` for it."""
+        return self.files.get("samples", SAMPLES_PLACE)
+
+    @cached_property
+    def crew_classes(self) -> pl.DataFrame:
+        """The table `crew_classes`."""
+        if not self.crew:
+            return STANDARD_CREWS.with_columns(handicap=pl.lit(self.handicap))
+        return pl.DataFrame([crew.to_row(self.handicap) for crew in self.crew], CREW_SCHEMA)
 
     @cached_property
     def meaning(self) -> dict[str, str]:
@@ -316,8 +426,14 @@ class Profiles(_Strict):
             names_of.setdefault(header, []).append(name)
         renamed = []
         for column in columns:
-            own = names_of.get(fold(column.header), [])
-            renamed.append(replace(column, also=column.also + tuple(own)))
+            own = names_of.get(fold(column.header), []) + names_of.get(fold(column.key), [])
+            if not own:
+                renamed.append(column)
+                continue
+            also = column.also + (column.header, column.key) + tuple(own)
+            without_unit = [name for name in own if "[" not in self.headers[name]]
+            header = without_unit[0] if without_unit else column.header
+            renamed.append(replace(column, header=header, also=also))
         return tuple(renamed)
 
     @cached_property

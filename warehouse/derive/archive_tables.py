@@ -8,6 +8,7 @@ import duckdb
 import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
+from pipeline.crews import STANDARD_CREWS
 from pipeline.errors import HerijkError, MissingKnowledgeError, NoTowsYetError
 from pipeline.messages import say
 from pipeline.recompute.facts import add_boat_types
@@ -29,6 +30,7 @@ SAMPLES_MISSING: Final = "samples_missing"
 
 def archive_tables(
     list_faults: pl.DataFrame,
+    crew_classes: pl.DataFrame,
     listed_boats: pl.DataFrame,
     listed_windows: pl.DataFrame,
     season_tows: pl.DataFrame,
@@ -56,7 +58,10 @@ def archive_tables(
     listed = _add_reading_steps(season_tows.join(sound, on="tow_id", how="semi"), index)
     runs_read = season_runs.join(present, on=["tow_id", "run"], how="semi")
     tows, contradicted = judge_tows(
-        add_boat_types(listed, listed_boats), stack_blocks(blocks, runs_read), contents
+        add_boat_types(listed, listed_boats),
+        stack_blocks(blocks, runs_read),
+        contents,
+        crew_classes,
     )
     sound = sound.join(tows, on="tow_id", how="semi")
     runs = runs_read.join(tows, on="tow_id", how="semi")
@@ -110,6 +115,7 @@ def read_archive(store: Store, root: Path, today: dt.date | None = None) -> None
     blocks = lake.read_all_blocks(store, samples)
     made = archive_tables(
         list_faults=tables["list_faults"],
+        crew_classes=tables["crew_classes"],
         listed_boats=tables["listed_boats"],
         listed_windows=tables["listed_windows"],
         season_tows=tows,
@@ -173,7 +179,10 @@ def _add_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
 
 
 def judge_tows(
-    tows: pl.DataFrame, blocks: RunBlocks, contents: pl.DataFrame
+    tows: pl.DataFrame,
+    blocks: RunBlocks,
+    contents: pl.DataFrame,
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
     """Return the tows with their doubts, and the faults of those that other tows contradict.
 
@@ -181,10 +190,11 @@ def judge_tows(
         tows: rows of `tows` with `boat_type`.
         blocks: their runs.
         contents: what `same_samples` takes of the same blocks.
+        crew_classes: the table of that name.
     """
     twice = find_same_samples(tows, contents)
     once = tows.join(twice, on="tow_id", how="anti")
-    judged = judge(once, blocks)
+    judged = judge(once, blocks, crew_classes)
     gross = list_gross_faults(judged, once)
     kept = add_doubts(once.join(gross, on="tow_id", how="anti"), judged)
     return kept, pl.concat([twice, gross])

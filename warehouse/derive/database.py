@@ -131,7 +131,7 @@ def _quote(text: str) -> str:
 def _describe_archive(about_archive: pl.DataFrame) -> pl.DataFrame:
     archive = about_archive.row(0, named=True)
     about = {"simulated": str(archive["simulated"]).lower(), "code_version": code_version()}
-    for key in ("publisher", "licence"):
+    for key in ("publisher", "licence", "crew_names", "languages"):
         if archive[key]:
             about[key] = archive[key]
     return pl.DataFrame({"key": list(about), "value": list(about.values())})

@@ -34,16 +34,17 @@ _SENSOR: Final = {
 """Per quantity that can be shifted, what its reason code and its checks are named after."""
 
 
-def judge(tows: pl.DataFrame, blocks: RunBlocks) -> tuple[Shift, ...]:
+def judge(tows: pl.DataFrame, blocks: RunBlocks, crew_classes: pl.DataFrame) -> tuple[Shift, ...]:
     """Judge each tow by all others of the archive.
 
     Args:
         tows: rows of `tows` with `boat_type`.
         blocks: their runs, and perhaps others.
+        crew_classes: the table of that name.
     """
     if tows.is_empty():
         return ()
-    return plausibility(Tows.from_frames(tows, blocks))
+    return plausibility(Tows.from_frames(tows, blocks), crew_classes)
 
 
 def list_gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:

@@ -44,6 +44,7 @@ class ArchiveRuns:
         tow_runs: rows of `tow_runs`.
         hand_windows: rows of `hand_windows`.
         blocks: the sums per second of all runs.
+        crew_classes: rows of `crew_classes`.
     """
 
     boats: pl.DataFrame
@@ -51,6 +52,7 @@ class ArchiveRuns:
     tow_runs: pl.DataFrame
     hand_windows: pl.DataFrame
     blocks: pl.DataFrame
+    crew_classes: pl.DataFrame
 
     def keep_only(self, tow_ids: Collection[str]) -> "ArchiveRuns":
         """Return the archive with these tows only."""
@@ -61,6 +63,7 @@ class ArchiveRuns:
             tow_runs=self.tow_runs.filter(is_chosen),
             hand_windows=self.hand_windows.filter(is_chosen),
             blocks=self.blocks.filter(is_chosen),
+            crew_classes=self.crew_classes,
         )
 
 
@@ -156,5 +159,6 @@ def _recompute_methods(
 def _recompute(method: Method, archive: ArchiveRuns, cache: RunCache) -> dict[str, pl.DataFrame]:
     """Return `METHOD_TABLES` of one method."""
     runs = stack_blocks(archive.blocks, add_hand_windows(archive.tow_runs, archive.hand_windows))
-    made = recompute(method, add_boats(archive.tows, archive.boats), runs, cache)
+    tows = add_boats(archive.tows, archive.boats)
+    made = recompute(method, tows, runs, cache, crew_classes=archive.crew_classes)
     return vars(made) | {"ensemble": draw_members(method, made)}

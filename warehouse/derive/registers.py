@@ -55,6 +55,7 @@ def register_tables(
     published: Mapping[str, pl.DataFrame],
     correction_steps: pl.DataFrame,
     methods: Sequence[Method],
+    crew_classes: pl.DataFrame,
 ) -> dict[str, pl.DataFrame]:
     """Make draft registers, their changes and lineage, and the list of boats that are due.
 
@@ -95,18 +96,23 @@ def register_tables(
     with_editions = {
         name: pl.concat([conform(name, frame), published[name]]) for name, frame in made.items()
     }
-    return with_editions | {"due_list": list_due_lines(lines, boats, listed_races, as_of)}
+    return with_editions | {
+        "due_list": list_due_lines(lines, boats, listed_races, as_of, crew_classes)
+    }
 
 
 def race_changes(
-    register_changes: pl.DataFrame, register_history: pl.DataFrame, listed_races: pl.DataFrame
+    register_changes: pl.DataFrame,
+    register_history: pl.DataFrame,
+    listed_races: pl.DataFrame,
+    crew_classes: pl.DataFrame,
 ) -> pl.DataFrame:
     """Replay all races in the archive under both editions of every pair that is compared."""
     pairs = register_changes.select(EDITIONS).unique().sort(EDITIONS)
     replayed = {}
     for edition in pairs.unpivot()["value"].unique():
         lines = register_history.filter(edition=edition)
-        replayed[edition] = replay.replay(lines, listed_races, replay.RaceRules())
+        replayed[edition] = replay.replay(lines, listed_races, replay.RaceRules(), crew_classes)
     frames = []
     for old, new in pairs.iter_rows():
         changes = replay.race_changes(replayed[old], replayed[new])
@@ -121,12 +127,16 @@ def draw_members(method: Method, made: Recomputed) -> pl.DataFrame:
 
 
 def list_due_lines(
-    lines: Mapping[str, pl.DataFrame], boats: pl.DataFrame, races: pl.DataFrame, as_of: dt.date
+    lines: Mapping[str, pl.DataFrame],
+    boats: pl.DataFrame,
+    races: pl.DataFrame,
+    as_of: dt.date,
+    crew_classes: pl.DataFrame,
 ) -> pl.DataFrame:
     """Return rows of `due_list`, of the lines of each method."""
     of_methods = []
     for method, own in lines.items():
-        part = due.due_list(own, boats, races, as_of)
+        part = due.due_list(own, boats, races, as_of, crew_classes)
         of_methods.append(part.select(pl.lit(method).alias("method"), pl.all()))
     return pl.concat(of_methods)
 

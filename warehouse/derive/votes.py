@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import polars as pl
 
+from pipeline.crews import STANDARD_CREWS
 from pipeline.method.definition import Method
 from pipeline.register.changes import compare_lines
 from pipeline.register.printed import carry_lines
@@ -30,6 +31,7 @@ def vote_tables(
     log_factors: pl.DataFrame,
     decisions: pl.DataFrame,
     methods: Sequence[Method],
+    crew_classes: pl.DataFrame = STANDARD_CREWS,
 ) -> dict[str, pl.DataFrame]:
     """Return what every combination makes of the register, and of the races of the last season.
 
@@ -60,7 +62,7 @@ def vote_tables(
         )
         in_time = list_lines_of_all_days(own_curves, tows, method.validity, decisions, carried)
         on_day = list_lines_on_days(in_time, [as_of]).with_columns(edition=pl.lit(combination))
-        results = replay(in_time, last_races, RaceRules())
+        results = replay(in_time, last_races, RaceRules(), crew_classes)
         if not on:
             first_lines, first_results = on_day, results
         columns = {

@@ -13,6 +13,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.blocks.run_blocks import stack_blocks
+from pipeline.crews import STANDARD_CREWS
 from pipeline.method.definition import RUNS_ALONE, Method, find_method_in_force
 from pipeline.races.power import compute_line_cw
 from pipeline.register.causes import (
@@ -31,6 +32,7 @@ from pipeline.register.replay import RaceRules, compare_winners, race_changes, r
 from pipeline.tables.row import Row
 from warehouse.derive.edition_lines import list_lines_in_time
 from warehouse.editions.inputs import find_same_tows, read_tables_of_today
+from warehouse.store.crew_classes import read_crew_classes
 from warehouse.store.editions import CHANGES, Edition
 from warehouse.store.methods import KnownMethods
 from warehouse.store.store import Store
@@ -238,8 +240,9 @@ def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules
     if store.read_fingerprint("listed_races") is None or not store.count_rows("listed_races"):
         return without_races
     results = store.read("listed_races")
-    before = replay(list_lines_in_time(store, old), results, rules)
-    after = replay(list_lines_in_time(store, new), results, rules)
+    crew_classes = read_crew_classes(store)
+    before = replay(list_lines_in_time(store, old), results, rules, crew_classes)
+    after = replay(list_lines_in_time(store, new), results, rules, crew_classes)
     members = new.tables.get("ensemble", pl.DataFrame())
     return replace(
         without_races,
@@ -248,11 +251,20 @@ def report_with_races(store: Store, old: Edition, new: Edition, rules: RaceRules
     )
 
 
+def _count_classes(lines: pl.DataFrame) -> dict[str, int]:
+    """Return the number of lines of each class; of the default classes also where it is none."""
+    counts = dict(lines["crew_class"].value_counts().sort("crew_class").rows())
+    standard = STANDARD_CREWS["crew_class"].to_list()
+    if set(counts) <= set(standard):
+        return {crew_class: counts.get(crew_class, 0) for crew_class in standard}
+    return counts
+
+
 def _summarise(lines: pl.DataFrame) -> Row:
     power, seconds = lines.select("power_ratio", "gain_in_two_hours_s").median().row(0)
     return {
         "lines": lines.height,
-        "of_class": {c: lines.filter(crew_class=c).height for c in ("H", "D")},
+        "of_class": _count_classes(lines),
         "median_power_ratio": power,
         "median_seconds": seconds,
     }

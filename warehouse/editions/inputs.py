@@ -23,6 +23,8 @@ NOT_INPUT: Final = JUDGED + (
 """What a tow is called or said to be does not change its numbers; its doubts follow from others."""
 
 INPUTS_HASH: Final = "inputs_sha256"
+MAKE_NUMBERS: Final = ("boats", "tows", "windows", "force_checks", "lamps", "profile")
+"""Kinds of files, beside samples, that can change a number of an edition."""
 OLDER_SOURCES: Final = "inputs.csv"
 """What editions up to version 1.0.0 were made from; since then the manifest and the tows say it."""
 
@@ -63,9 +65,7 @@ def find_same_tows(
 
 def list_files(store: Store) -> dict[str, str]:
     """Return the lists of the archive, by path, with the SHA-256 of each."""
-    is_list = pl.col("path").str.contains(r"^(sleeplijsten/|sloepregister/sloependata|archief)")
-    is_acceptance = pl.col("path").str.starts_with("sleeplijsten/beoordelingen.")  # no number's
-    listed = store.read("listed_files").filter(is_list & ~is_acceptance).sort("path")
+    listed = store.read("listed_files").filter(pl.col("kind").is_in(MAKE_NUMBERS)).sort("path")
     return dict(listed.select("path", "sha256").rows())
 
 

@@ -48,6 +48,7 @@ from warehouse.editions.inputs import (
 from warehouse.intake import seasons as intake
 from warehouse.store import decisions as decided
 from warehouse.store import editions as folder
+from warehouse.store.crew_classes import read_crew_classes
 from warehouse.store.editions import (
     Edition,
     Manifest,
@@ -177,7 +178,7 @@ def _recompute(
     """Compute all tables of an edition from tows and runs; `inputs` holds both tables."""
     tows, runs = inputs["tows"], inputs["tow_runs"]
     blocks = stack_blocks(intake.read_all_blocks(store), runs)
-    made = recompute(method, tows, blocks, with_bands=False)
+    made = recompute(method, tows, blocks, with_bands=False, crew_classes=read_crew_classes(store))
     carried = _read_carried_lines(store, manifest, method, made.log_factors, tows)
     draft = draft_register(
         made.curves, tows, crews, manifest.valid_from, method.validity, decisions, carried

@@ -4,6 +4,7 @@ Reading one season's files is `warehouse.intake.lake`.
 """
 
 import dataclasses
+import json
 import os
 from collections.abc import Sequence
 from contextlib import suppress
@@ -14,6 +15,7 @@ import polars as pl
 
 from pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from pipeline.errors import MissingKnowledgeError
+from pipeline.messages import LANGUAGES
 from pipeline.recompute.facts import add_boat_types, add_hand_windows
 from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import AboutArchive
@@ -33,6 +35,7 @@ from warehouse.store.unforeseen import note
 INDEXED: Final = (
     "listed_boats", "listed_tows", "listed_runs", "listed_windows", "listed_files", "listed_races",
     "listed_acceptances", "printed_registers", "list_faults", "about_archive", "season_profiles",
+    "crew_classes",
 )  # fmt: skip
 """What is kept of the archive's lists."""
 
@@ -54,6 +57,10 @@ def index(store: Store, root: Path) -> dict[str, pl.DataFrame]:
             note(store.root, (fault.tow_id or fault.path).replace(" ", "-"), fault.trace)
     about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
     about |= listed.profiles.publication.model_dump()
+    names = {crew.code: crew.name for crew in listed.profiles.crew}
+    about["crew_names"] = json.dumps(names) if names else None
+    languages = tuple(dict.fromkeys(listed.profiles.languages))
+    about["languages"] = " ".join(languages) if languages != LANGUAGES else None
     profiles = []
     for season in listed.tows["season"].unique().sort():
         profile = dataclasses.asdict(listed.profiles.find(season))
@@ -70,6 +77,7 @@ def index(store: Store, root: Path) -> dict[str, pl.DataFrame]:
         "printed_registers": printed,
         "list_faults": make_fault_frame(all_faults),
         "about_archive": make_frame(AboutArchive, [about]),
+        "crew_classes": listed.profiles.crew_classes,
         "season_profiles": pl.DataFrame(profiles, schema, orient="row"),
     }
 

@@ -20,6 +20,7 @@ from pipeline.register.replay import (
 )
 from pipeline.tables.row import Row
 from warehouse.queries.views import DRAFT, Views
+from warehouse.store.crew_classes import read_crew_classes
 from warehouse.store.database import make_unknown_edition_error
 from warehouse.store.editions import Edition, read_edition
 from warehouse.store.methods import KnownMethods
@@ -286,8 +287,9 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
         with one under both, and how many those are.
     """
     history, results = views.table("register_history"), views.store.read("listed_races")
-    before = replay(history.filter(edition=old), results, RaceRules())
-    after = replay(history.filter(edition=new), results, RaceRules())
+    crew_classes = read_crew_classes(views.store)
+    before = replay(history.filter(edition=old), results, RaceRules(), crew_classes)
+    after = replay(history.filter(edition=new), results, RaceRules(), crew_classes)
     ranked = race_changes(before, after).drop_nulls("new_rank")
     moved = ranked.filter(pl.col("old_rank") != pl.col("new_rank")).height
     members = pl.DataFrame()

@@ -16,6 +16,7 @@ from pipeline.register.register import CURVE_COLUMNS, LINE, list_lines_on_days, 
 from pipeline.tables.keys import SIZES
 from pipeline.tables.schemas import TABLES, conform
 from warehouse.derive.registers import list_due_lines, read_published_tables
+from warehouse.store.crew_classes import read_crew_classes
 from warehouse.store.editions import CHANGES
 from warehouse.store.store import Store
 
@@ -43,7 +44,9 @@ def overlay_register(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) 
     drafts = {m: register.filter(edition=name_draft(m)) for m in read["methods"]["method"]}
     made = {
         "register": register,
-        "due_list": list_due_lines(drafts, read["boats"], store.read("listed_races"), day),
+        "due_list": list_due_lines(
+            drafts, read["boats"], store.read("listed_races"), day, read_crew_classes(store)
+        ),
         "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
     }
     for name, frame in made.items():

@@ -103,7 +103,8 @@ def assess(store: Store, archive: Path, tow_id: str, method: Method) -> Assessme
         if copy.read("listed_tows").filter(tow_id=tow_id).is_empty():
             raise _make_unusable_error(tow_id, copy.read("list_faults"))
         runs = stack_blocks(intake.read_all_blocks(copy), intake.read_runs_with_windows(copy))
-        made = recompute(method, add_boats(copy.read("tows"), copy.read("boats")), runs)
+        tows = add_boats(copy.read("tows"), copy.read("boats"))
+        made = recompute(method, tows, runs, crew_classes=copy.read("crew_classes"))
         for name, frame in vars(made).items():
             if name in TABLES:
                 copy.write(name, conform(name, frame))

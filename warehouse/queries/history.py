@@ -16,12 +16,14 @@ from pipeline.blocks.run_blocks import RunBlocks
 from pipeline.consistency.observed import observe_trusted, select_trusted
 from pipeline.consistency.repeats import repeat_pairs, reproducibility
 from pipeline.consistency.types import DIFFERENCES_THAT_MATTER, compare_types
+from pipeline.crews import STANDARD_CREWS
 from pipeline.method.definition import Method
 from pipeline.recompute.recompute import recompute
 from pipeline.recompute.results import Recomputed
 from pipeline.recompute.run_cache import RunCache
 from pipeline.register.register import draft_register, find_reference_day, name_draft
 from warehouse.intake.seasons import read_typed_tows, run_blocks
+from warehouse.store.crew_classes import read_crew_classes
 from warehouse.store.store import Store, make_no_warehouse_error
 
 
@@ -35,6 +37,7 @@ class History:
         crews: listed boats with their crews, also those never towed.
         blocks: the runs of `tows`.
         last_day: the day of the last tow or race, on which drafts judge what is valid.
+        crew_classes: the table of that name.
         differences: spread between boats of a type that matters, as a ratio by quantity.
         cache: what was found of the runs so far.
     """
@@ -44,6 +47,7 @@ class History:
     crews: pl.DataFrame
     blocks: RunBlocks
     last_day: dt.date
+    crew_classes: pl.DataFrame = field(default_factory=lambda: STANDARD_CREWS)
     differences: Mapping[str, float] = field(default_factory=lambda: DIFFERENCES_THAT_MATTER)
     cache: RunCache = field(default_factory=RunCache)
 
@@ -65,6 +69,7 @@ class History:
             differences=dict(DIFFERENCES_THAT_MATTER) | dict(known.unique().rows()),
             crews=store.read("listed_boats"),
             blocks=run_blocks(store),
+            crew_classes=read_crew_classes(store),
         )
 
     def under(self, method: Method) -> "Draft":
@@ -73,7 +78,14 @@ class History:
         Raises:
             MissingKnowledgeError: the method says nothing about a season.
         """
-        made = recompute(method, self.tows, self.blocks, self.cache, with_bands=False)
+        made = recompute(
+            method,
+            self.tows,
+            self.blocks,
+            self.cache,
+            with_bands=False,
+            crew_classes=self.crew_classes,
+        )
         lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
         edition = pl.lit(name_draft(method.name)).alias("edition")
         return Draft(self, method, made, lines.with_columns(edition))

@@ -72,7 +72,7 @@ def choose_type(views: Views, wanted: str) -> str:
     known = list(types) + boats["fsn_no"].to_list() + boats["name"].drop_nulls().to_list()
     raise MissingKnowledgeError(
         "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by "
-        "FSN number or name, for example {}.{}",
+        "number or name, for example {}.{}",
         wanted,
         ", ".join(f"{name} ({n})" for name, n in types.items()),
         views.table("tows")["fsn_no"].min(),

@@ -91,7 +91,7 @@ def choose_boat(boats: pl.DataFrame, wanted: str) -> str:
     if numbers:
         more = ", ..." if len(numbers) > MAX_NAMES_SHOWN else ""
         raise MissingKnowledgeError(
-            "{!r} may be any of {} boats: {}; give the FSN number",
+            "{!r} may be any of {} boats: {}; give its number",
             wanted,
             len(numbers),
             ", ".join(numbers[:MAX_NAMES_SHOWN]) + more,
@@ -99,7 +99,7 @@ def choose_boat(boats: pl.DataFrame, wanted: str) -> str:
     number, example = boats.sort("fsn_no").select("fsn_no", "name").row(0)
     known = boats["fsn_no"].to_list() + boats["name"].drop_nulls().to_list()
     raise MissingKnowledgeError(
-        "there is no boat {!r}; boats go by FSN number or name, for example {} or {}.{}",
+        "there is no boat {!r}; boats go by number or name, for example {} or {}.{}",
         wanted,
         number,
         example,

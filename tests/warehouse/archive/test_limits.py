@@ -53,7 +53,7 @@ def cells_of(text):
     return dict(zip(heads, cells, strict=True))
 
 
-LISTS = {kind.pattern: (kind, cells_of(text)) for kind, text in TEXTS.items()}
+LISTS = {kind.name: (kind, cells_of(text)) for kind, text in TEXTS.items()}
 
 
 def has_numbers(kind):
@@ -63,8 +63,8 @@ def has_numbers(kind):
 
 
 def test_every_kind_of_list_is_tried():
-    assert {kind.pattern for kind, _ in LISTS.values()} == {
-        k.pattern for k in list_kinds.LIST_KINDS if has_numbers(k)
+    assert {kind.name for kind, _ in LISTS.values()} == {
+        k.name for k in list_kinds.LIST_KINDS if has_numbers(k)
     }
 
 
@@ -133,7 +133,7 @@ def test_one_step_outside_is_set_aside_and_inside_accepted(name, tmp_path):
 @pytest.mark.parametrize(("season", "fits"), [(1989, False), (1990, True), (2100, True)])
 def test_a_season_outside_its_limits_is_set_aside_with_a_sentence(season, fits, tmp_path):
     (tmp_path / "wedstrijden").mkdir()
-    race = LISTS[list_kinds.RACES.pattern][1] | {"datum": f"{season}-06-01"}
+    race = LISTS[list_kinds.RACES.name][1] | {"datum": f"{season}-06-01"}
     (tmp_path / f"wedstrijden/a_{season}.csv").write_text(
         ";".join(race) + "\n" + ";".join(race.values()) + "\n"
     )
