@@ -64,7 +64,7 @@ def every_tow_has_a_curve_row(store: Store, _: Settings) -> Found:
     methods = store.read("methods").select("method")
     expected = methods.join(store.read("tows").select("tow_id"), how="cross")
     lost = expected.join(store.read("curves"), on=["method", "tow_id"], how="anti")
-    return Found([f"{method} {tow}" for method, tow in lost.rows()])
+    return Found(lost.select(pl.format("{} {}", "method", "tow_id")).to_series().to_list())
 
 
 def few_tows_set_aside(store: Store, settings: Settings) -> Found:

@@ -9,7 +9,7 @@ from dashboards.addresses import make_key
 from dashboards.queries.results import Data, Results
 from pipeline.errors import MissingKnowledgeError
 from pipeline.register.inspection import MEASURES, WEIGHT
-from pipeline.tables.row import Row
+from pipeline.tables.row import Row, pick_columns
 
 KIND_OF_MEASURE: Final = {name: kind for kind, names in MEASURES.items() for name in names}
 
@@ -69,9 +69,7 @@ def choose_race(results: Results, name: str) -> Row:
         known = ", ".join(races["race"].unique(maintain_order=True)) or "-"
         raise MissingKnowledgeError("there is no race {}; there are: {}", name, known)
     first = own.row(0, named=True)
-    return {name: first[name] for name in ("race", "race_date", "key")} | {
-        "boats": set(own["fsn_no"])
-    }
+    return pick_columns(first, ("race", "race_date", "key")) | {"boats": set(own["fsn_no"])}
 
 
 def _describe_measures(rows: pl.DataFrame) -> Data:

@@ -406,17 +406,18 @@ def _find_shifts(
         listed: what may have shifted among them.
     """
     quantities = [one.quantity for one in listed]
-    lengths = [len(one.places) for one in listed]
+    places = [one.places for one in listed]
+    lengths = list(map(len, places))
     columns = (
         np.concatenate([one.effect for one in listed]),
-        np.concatenate([one.places for one in listed]),
+        np.concatenate(places),
         np.concatenate(([0], np.cumsum(lengths))),
     )
     shape = (len(observations.values), len(listed))
     candidates = Candidates(
         directions=scipy.sparse.csc_array(columns, shape=shape),
         is_single=np.array([one.group.kind == "tow" for one in listed]),
-        min_size=np.array([MIN_SIZE[quantity] for quantity in quantities]),
+        min_size=np.array(list(map(MIN_SIZE.__getitem__, quantities))),
         gross_size=np.array([GROSS if q in _HAS_UNITS else np.inf for q in quantities]),
     )
     flag_at = min(FLAG_AT_SD.get(quantity, np.inf) for quantity in quantities)

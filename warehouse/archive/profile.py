@@ -158,7 +158,7 @@ _Number = Annotated[float, Field(gt=0, strict=False)]
 _Range = Annotated[
     tuple[_Number, _Number], Field(strict=False), AfterValidator(_refuse_descending_range)
 ]
-_Folded = Annotated[list[str], AfterValidator(lambda names: [fold(name) for name in names])]
+_Folded = Annotated[list[str], AfterValidator(lambda names: list(map(fold, names)))]
 
 
 def make_pattern(place: str) -> re.Pattern[str]:

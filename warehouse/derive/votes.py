@@ -95,7 +95,7 @@ def replace_curves(curves: pl.DataFrame, computed: pl.DataFrame) -> pl.DataFrame
     )
     return (
         curves.join(found, on="tow_id", how="left", maintain_order="left")
-        .with_columns(pl.lit(None, pl.Float64).alias(name) for name in INTERVALS)
+        .with_columns(**dict.fromkeys(INTERVALS, pl.lit(None, pl.Float64)))
         .with_columns(
             a_kg_m="new_a",
             b_m_s="new_b",

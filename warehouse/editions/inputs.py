@@ -31,9 +31,9 @@ OLDER_SOURCES: Final = "inputs.csv"
 
 def add_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
     """Add the hash of all that the numbers of a tow are made from: list row, runs and files."""
-    facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
+    facts = sorted(set(runs.columns) - set(NOT_INPUT))
     of_tow = runs.sort("tow_id", "run").select(facts).rows_by_key("tow_id", include_key=True)
-    measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
+    measured = sorted(set(tows.columns) - set(NOT_INPUT))
     hashes = [
         fingerprint(row, of_tow.get(tow_id, []))
         for tow_id, row in zip(tows["tow_id"], tows.select(measured).iter_rows(), strict=True)
