@@ -13,7 +13,8 @@ import numpy as np
 from pipeline.arrays import FloatArray
 
 AIR_DENSITY_KG_M3: Final = 1.225
-GRAVITY_M_S2: Final = 9.81
+GRAVITY_M_S2: Final = 9.813
+"""In the Netherlands."""
 CREW_FRONT_AREA_M2: Final = 0.5
 """Added to breadth x height; printed as 2 x 0.25, presumably the crew."""
 

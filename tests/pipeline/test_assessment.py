@@ -253,7 +253,7 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "crew_weight": ("tows", SUBJECT, {"crew_weight_kg": 500.0}, 62.5, 81, set()),
     "water_differs": ("tows", SUBJECT, {"water_off_c": 20.4}, 20.4, 3.0, set()),
     "shallow_water": (
-        "tows", SUBJECT, {"water_depth_m": 2.5}, (1.1 * 1.01 * V0 / 0.5) ** 2 / 9.81 / 2.5, 1.0,
+        "tows", SUBJECT, {"water_depth_m": 2.5}, (1.1 * 1.01 * V0 / 0.5) ** 2 / 9.813 / 2.5, 1.0,
         set(),
     ),
     "weight_not_recorded": ("tows", SUBJECT, {"crew_weight_kg": None}, 1, 0, set()),

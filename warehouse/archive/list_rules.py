@@ -11,6 +11,7 @@ from typing import Any, Final
 import polars as pl
 
 from pipeline.channels import SECOND_FILE_OFFSET
+from pipeline.hull import GRAVITY_M_S2
 from pipeline.messages import say
 from pipeline.register.register import NO_EMPTY_THWART
 from pipeline.tables.bases import TowFacts
@@ -40,8 +41,6 @@ OF_THE_BOAT: Final = (
 """What a boat has once; it may have had several names, and be rowed by several crews."""
 NO_TYPE: Final = ("overig", "overige", "diversen", "eenling")
 """Types that say that a boat is of none: those named so are not alike."""
-GRAVITY_M_S2: Final = 9.813
-"""In the Netherlands."""
 ONE_READING_SD: Final = 0.003
 """Spread of the ratio of one reading, where a day has too few to show it (inferred)."""
 WEIGHT_SD: Final = 0.001
