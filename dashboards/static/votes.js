@@ -3,7 +3,6 @@
 (() => {
   const all = (selector, within = document) => [...within.querySelectorAll(selector)];
   const HASH = "#on=";
-  const PODIUM = 3;
   const NONE = "\u2013";
   const switches = all("[role=switch]");
 
@@ -20,11 +19,12 @@
     bar.classList.toggle("faster", seconds < 0);
   }
 
-  function showPodium(body, place) {
+  function showPodium(table, place) {
+    const body = table.tBodies[0];
     const rows = [...body.rows].map((row) => [pick(row.dataset.new, place) ?? Infinity, row]);
     for (const [rank, row] of rows) {
       const before = pick(row.dataset.old, place) ?? NONE;
-      row.hidden = rank > PODIUM;
+      row.hidden = rank > table.dataset.places;
       row.classList.toggle("moved", rank !== before);
       row.cells[0].textContent = rank;
       row.cells[2].textContent = before;
@@ -36,7 +36,7 @@
     const place = getPlace();
     for (const said of all("[data-place]")) said.hidden = Number(said.dataset.place) !== place;
     for (const row of all("[data-seconds]")) showGain(row, place);
-    for (const body of all(".podium tbody")) showPodium(body, place);
+    for (const table of all(".podium")) showPodium(table, place);
     for (const other of all(".language")) other.hash = location.hash; // where there is another one
   }
 
