@@ -9,7 +9,7 @@ import dagster as dg
 import polars as pl
 from pydantic import Field
 
-from assets.lake import Folders, incremental, outs
+from assets.lake import Folders, incremental, make_outs
 from assets.workers import map_in_parallel
 from pipeline.blocks.run_blocks import PLACE
 from pipeline.errors import MissingKnowledgeError
@@ -31,7 +31,7 @@ PROGRESS: Final = "herijk.progress"
 """Logger of how many tows are read: attributes `done` and `total` of its records."""
 
 
-@dg.multi_asset(outs=outs(*seasons.INDEXED), can_subset=True)
+@dg.multi_asset(outs=make_outs(*seasons.INDEXED), can_subset=True)
 @incremental()
 def archive_lists(folders: Folders) -> dict[str, pl.DataFrame]:
     """Boats, tows, races and files of the archive, and what is wrong in the lists."""
@@ -110,7 +110,7 @@ def blocks(folders: Folders, samples: pl.DataFrame) -> pl.DataFrame:
 
 
 @dg.multi_asset(
-    outs=outs("boats", "seasons", "read_tows", "read_runs", "hand_windows", "set_aside"),
+    outs=make_outs("boats", "seasons", "read_tows", "read_runs", "hand_windows", "set_aside"),
     can_subset=True,
 )
 @incremental()

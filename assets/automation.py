@@ -22,7 +22,7 @@ from assets.settings import Settings
 from dashboards.guard import LOOPBACK
 from dashboards.reports import CHANGED, write_mail
 from pipeline.errors import MissingKnowledgeError
-from pipeline.messages import say, speaker
+from pipeline.messages import make_translator, say
 from warehouse.intake.seasons import listing
 from warehouse.store.store import Store, fingerprint
 
@@ -138,7 +138,7 @@ def rebuild_failed(settings: Settings, data: Path, is_served: bool) -> dg.Sensor
         reasons = [_explain_step(event) for event in context.get_step_failure_events()]
         reason = "\n".join(reasons) or str(context.failure_event.message)
         record_failure(Store(data), dt.datetime.now().astimezone(), reason)
-        send_mail(settings, speaker("nl")(say("The rebuild failed")), f"{reason}\n")
+        send_mail(settings, make_translator("nl")(say("The rebuild failed")), f"{reason}\n")
 
     return mail_failure
 

@@ -112,7 +112,7 @@ def nothing_unforeseen(store: Store, _: Settings) -> Found:
     tows = set_aside.select(pl.coalesce("tow_id", "path"))["tow_id"].to_list()
     failures = store.read("unforeseen")["what"]
     missing = [what for what in failures if not what.startswith("tow ")]
-    missing += [f"table {name}" for name in TABLES if store.failed(name)]
+    missing += [f"table {name}" for name in TABLES if store.get_failure(name)]
     missing += store.read("site")["failed"].explode().drop_nulls().to_list()
     return Found([*missing, *tows], ERROR if missing else WARN)
 

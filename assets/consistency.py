@@ -3,7 +3,7 @@
 import dagster as dg
 import polars as pl
 
-from assets.lake import Folders, incremental, outs
+from assets.lake import Folders, incremental, make_outs
 from pipeline.consistency import compared, prediction, repeats
 from pipeline.consistency.observed import observe_trusted, select_trusted
 
@@ -21,7 +21,9 @@ def differences_that_matter(folders: Folders) -> pl.DataFrame:
     )
 
 
-@dg.multi_asset(outs=outs("compared_tows", "type_consistency", "type_line_points"), can_subset=True)
+@dg.multi_asset(
+    outs=make_outs("compared_tows", "type_consistency", "type_line_points"), can_subset=True
+)
 @incremental(may_fail=True)
 def comparison_of_types(
     curves: pl.DataFrame,

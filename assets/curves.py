@@ -6,7 +6,7 @@ from typing import Final
 import dagster as dg
 import polars as pl
 
-from assets.lake import Folders, incremental, outs
+from assets.lake import Folders, incremental, make_outs
 from assets.rules import read_methods
 from pipeline.assessment.acceptance import judge_acceptances
 from pipeline.blocks.run_blocks import stack_blocks
@@ -22,7 +22,8 @@ STUDIES: Final = ("correction_steps", "vote_curves")
 
 
 @dg.multi_asset(
-    outs=outs(*METHOD_TABLES, "tows", "tow_runs", "failed_tows", "unforeseen"), can_subset=True
+    outs=make_outs(*METHOD_TABLES, "tows", "tow_runs", "failed_tows", "unforeseen"),
+    can_subset=True,
 )
 @incremental()
 def recomputed(
@@ -79,7 +80,7 @@ def acceptances(
     return judge_acceptances(listed_acceptances, listed_tows, curves)
 
 
-@dg.multi_asset(outs=outs(*STUDIES), can_subset=True)
+@dg.multi_asset(outs=make_outs(*STUDIES), can_subset=True)
 @incremental()
 def studies(
     folders: Folders,

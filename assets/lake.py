@@ -234,7 +234,7 @@ def confirm_outputs(store: Store, names: Iterable[str]) -> Iterator[dg.Materiali
         yield dg.MaterializeResult(asset_key=name, data_version=version, metadata=metadata)
 
 
-def outs(*names: str) -> dict[str, dg.AssetOut]:
+def make_outs(*names: str) -> dict[str, dg.AssetOut]:
     """Return the outputs of a multi-asset of which a run may ask for some tables."""
     return {name: dg.AssetOut(is_required=False) for name in names}
 

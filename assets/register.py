@@ -3,7 +3,7 @@
 import dagster as dg
 import polars as pl
 
-from assets.lake import Folders, incremental, outs
+from assets.lake import Folders, incremental, make_outs
 from assets.rules import read_methods
 from pipeline.register import inspection, years
 from warehouse.derive import registers as derive
@@ -11,7 +11,7 @@ from warehouse.derive.votes import vote_tables
 
 
 @dg.multi_asset(
-    outs=outs("register", "register_history", "register_changes", "lineage", "due_list"),
+    outs=make_outs("register", "register_history", "register_changes", "lineage", "due_list"),
     can_subset=True,
 )
 @incremental()
@@ -98,7 +98,7 @@ def race_changes(
     return derive.race_changes(register_changes, register_history, listed_races, crew_classes)
 
 
-@dg.multi_asset(outs=outs("vote_lines", "vote_races"), can_subset=True)
+@dg.multi_asset(outs=make_outs("vote_lines", "vote_races"), can_subset=True)
 @incremental(may_fail=True)
 def votes(
     folders: Folders,
@@ -126,7 +126,7 @@ def votes(
     )
 
 
-@dg.multi_asset(outs=outs("register_years", "year_winners"), can_subset=True)
+@dg.multi_asset(outs=make_outs("register_years", "year_winners"), can_subset=True)
 @incremental(may_fail=True)
 def registers_of_years(
     folders: Folders,

@@ -5,7 +5,7 @@ from typing import Final
 import dagster as dg
 import polars as pl
 
-from assets.lake import Folders, incremental, outs
+from assets.lake import Folders, incremental, make_outs
 from pipeline.method.definition import Method
 from warehouse.derive.registers import read_published_tables
 from warehouse.store.decisions import FILE_NAME, read_decisions, tabulate_decisions
@@ -49,7 +49,7 @@ def decisions(folders: Folders) -> pl.DataFrame:
 
 
 @dg.multi_asset(
-    outs=outs(
+    outs=make_outs(
         "editions",
         "published_register",
         "published_register_history",

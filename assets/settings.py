@@ -79,7 +79,7 @@ class Settings(BaseModel):
     dask: str | None = Field(default=None, pattern=r"^(tcp|tls)://")
 
 
-def applied(data: Path, asked: Sequence[str] = ()) -> list[str]:
+def choose_methods(data: Path, asked: Sequence[str] = ()) -> list[str]:
     """Return the names of the methods that a rebuild applies when these are asked for."""
     return methods_to_apply(Store(data), read_settings(data).methods, asked)
 

@@ -16,9 +16,9 @@ from pipeline.messages import (
     LANGUAGES,
     Sentence,
     format_probability,
+    make_translator,
     say,
-    speaker,
-    spoken,
+    write_in_language,
 )
 from pipeline.method.definition import LAST_SEASON
 from pipeline.tables.display import Kind, get_column
@@ -50,14 +50,14 @@ class Language:
     def __init__(self, tag: str, about: Mapping[str, str] | None = None) -> None:
         self.tag = tag
         self._own_crews: dict[str, str] = json.loads((about or {}).get("crew_names", "{}"))
-        self._say = speaker(tag)
+        self._say = make_translator(tag)
         self._marks = str.maketrans({".": DECIMALS[tag], "-": MINUS})
 
     # -- Texts ------------------------------------------------------------------------------------
 
     def say(self, text: Sentence | str) -> str:
         """Return a text without values."""
-        return str(spoken(text, self.tag))
+        return str(write_in_language(text, self.tag))
 
     def fill_in(self, text: str, row: Mapping[str, Any] | None = None, /, **values: Any) -> Markup:
         """Return a text with values filled in, escaped.

@@ -53,7 +53,7 @@ class UnavailableError(HerijkError):
     """The machine is in the way: someone else writes, the disk is full. Nothing is lost."""
 
 
-def unexpected(error: BaseException) -> str:
+def describe_unforeseen(error: BaseException) -> str:
     """Return one sentence for an error that nobody foresaw."""
     what = " ".join(str(error).split())[:300]
     return say("an unexpected error: {}: {}", type(error).__name__, what)

@@ -102,7 +102,7 @@ class Sentence(str):
         sentence.number = number
         return sentence
 
-    def spoken(self, language: str) -> str:
+    def write_in(self, language: str) -> str:
         """Return the sentence in `en` or `nl`; in English where there is no Dutch."""
         if language == "en":
             return str(self)
@@ -136,7 +136,7 @@ def _fill_in(
 def _translate_value(value: object, language: str) -> object:
     """Return a value in a language: text translated, a number with its decimal mark."""
     if isinstance(value, str | Exception):
-        return spoken(value, language)
+        return write_in_language(value, language)
     return _WithComma(value) if DECIMALS[language] == "," and isinstance(value, Real) else value
 
 
@@ -165,14 +165,14 @@ def ngettext(one: str, many: str, number: int) -> Sentence:
     return Sentence(one, values={"n": number}, plural=many, number=number)
 
 
-def speaker(language: str) -> Say:
+def make_translator(language: str) -> Say:
     """Return a function that gives texts in one language."""
     return partial(_say_in, language)
 
 
 def _say_in(language: str, text: str, *in_order: object, **named: object) -> str:
     if isinstance(text, Sentence) and not in_order and not named:
-        return text.spoken(language)
+        return text.write_in(language)
     known = _look_up(language, text, getattr(text, "context", ""))
     return _fill_in(known, language, in_order, named)
 
@@ -204,14 +204,14 @@ def _printable(value: object) -> object:
     return line if line.isprintable() else "".join(c if c.isprintable() else "?" for c in line)
 
 
-def spoken(text: Any, language: str) -> Any:
+def write_in_language(text: Any, language: str) -> Any:
     """Return a sentence or an error in a language; any other text is data, and stays."""
     if isinstance(text, Exception):
         text = text.args[0] if text.args and isinstance(text.args[0], Sentence) else str(text)
-    return text.spoken(language) if isinstance(text, Sentence) else text
+    return text.write_in(language) if isinstance(text, Sentence) else text
 
 
-def innermost(text: str) -> str:
+def find_innermost(text: str) -> str:
     """Return the sentence about a line: the one within `Line 3: ...`."""
     while isinstance(text, Sentence) and isinstance(text.values.get("what"), Sentence):
         text = text.values["what"]
@@ -223,7 +223,7 @@ def find_cause(text: str) -> str:
 
     What differs from fault to fault is left open: `column 'klasse' is '…'; H or D is expected.`
     """
-    what = innermost(text)
+    what = find_innermost(text)
     if not isinstance(what, Sentence):
         return what
     shared = {name: what.values[name] for name in _SHARED if name in what.values}

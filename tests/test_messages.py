@@ -10,9 +10,9 @@ from babel.messages.pofile import read_po
 from dashboards.document import Document
 from dashboards.language import Language
 from dashboards.terminal import to_text
-from herijk.cli.speaking import language_of
+from herijk.cli.speaking import find_language
 from pipeline import errors
-from pipeline.messages import ngettext, pgettext, say, speaker, spoken
+from pipeline.messages import make_translator, ngettext, pgettext, say, write_in_language
 from tests.texts import (
     OF_CLICK,
     PO,
@@ -23,7 +23,7 @@ from tests.texts import (
     list_untranslated,
 )
 
-NL = speaker("nl")
+NL = make_translator("nl")
 
 
 def values(text):
@@ -63,7 +63,7 @@ def test_numbers_have_the_decimal_mark_of_the_language():
     english = "{} tows in {} seasons"
     said = say(english, 0.25, 3)
     assert said == "0.25 tows in 3 seasons"
-    assert said.spoken("nl") == "0,25 proeven in 3 seizoenen"
+    assert said.write_in("nl") == "0,25 proeven in 3 seizoenen"
     assert NL(english, 0.25, 3) == "0,25 proeven in 3 seizoenen"
 
 
@@ -86,15 +86,16 @@ def test_an_error_within_a_sentence_is_said_in_its_language():
     outer = errors.HerijkError("{}: {}", "b.toml", inner)
     assert str(outer) == "b.toml: a is the name of another method; choose another"
     assert (
-        spoken(outer, "nl") == "b.toml: a is de naam van een andere methode; kies een andere naam"
+        write_in_language(outer, "nl")
+        == "b.toml: a is de naam van een andere methode; kies een andere naam"
     )
 
 
 def test_data_is_never_translated():
     """A boat may be called as a text is: `Look`, a heading of the help, is `Bekijken`."""
     assert NL("Look") == "Bekijken"
-    assert spoken("Look", "nl") == "Look"
-    assert say("{} tows in {} seasons", "Look", 3).spoken("nl") == "Look proeven in 3 seizoenen"
+    assert write_in_language("Look", "nl") == "Look"
+    assert say("{} tows in {} seasons", "Look", 3).write_in("nl") == "Look proeven in 3 seizoenen"
     assert NL("{} tows in {} seasons", "Look", 3) == "Look proeven in 3 seizoenen"
     made = Document(Language("nl")).table([{"name": "Look"}], "name", heads={"name": say("boat")})
     assert to_text(made) == "  sloep\n  Look"
@@ -115,4 +116,4 @@ def test_click_still_says_what_is_translated():
     ],
 )  # fmt: skip
 def test_the_language_is_that_asked_for_or_that_of_the_system(arguments, environment, language):
-    assert language_of(arguments, environment) == language
+    assert find_language(arguments, environment) == language

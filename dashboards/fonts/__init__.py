@@ -25,10 +25,10 @@ _FACE: Final = (
 def style_sheet() -> str:
     """Return a style sheet that brings the font along."""
     return "".join(
-        _FACE.format(family=FAMILY, weight=weight, data=_encoded(f"OpenSans-{name}.woff2"))
+        _FACE.format(family=FAMILY, weight=weight, data=_encode_font(f"OpenSans-{name}.woff2"))
         for name, weight in WEIGHTS.items()
     )
 
 
-def _encoded(name: str) -> str:
+def _encode_font(name: str) -> str:
     return base64.b64encode((FOLDER / name).read_bytes()).decode("ascii")

@@ -11,11 +11,16 @@ import polars as pl
 
 from dashboards.queries.results import Data, Results
 from pipeline.method.options import find_basis
-from pipeline.method.variant import Difference, differences
+from pipeline.method.variant import Difference, list_differences
 from pipeline.register.register import name_draft
 from pipeline.tables.display import STEP_CHANGE
 from pipeline.tables.row import Row, pick_columns
-from warehouse.queries.answers import add_peers, answers, list_season_faults, select_own_races
+from warehouse.queries.answers import (
+    add_peers,
+    list_season_faults,
+    read_line_answers,
+    select_own_races,
+)
 from warehouse.queries.views import DRAFT, prepare_curve_figure
 from warehouse.store.methods import KnownMethods
 
@@ -150,14 +155,14 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     """Return the answer about each crew in an edition, by boat.
 
     Returns:
-        Rows of `warehouse.queries.answers.answers` with `races`, `faults`, `causes`, `bars` (see
-        `measure_bars`), `cw_verdict` (same, lower or higher), `has_moved` since the tow before,
-        `peers` (Cw of the other boats of its type and class), the interval of the old number,
-        `decided_steps`: those of which nothing is put to the vote, and `Results.objection`.
+        Rows of `warehouse.queries.answers.read_line_answers` with `races`, `faults`, `causes`,
+        `bars` (see `measure_bars`), `cw_verdict` (same, lower or higher), `has_moved` since the tow
+        before, `peers` (Cw of the other boats of its type and class), the interval of the old
+        number, `decided_steps`: those of which nothing is put to the vote, and `Results.objection`.
     """
     if edition in results.answers:
         return results.answers[edition]
-    lines = answers(results.views, edition)
+    lines = read_line_answers(results.views, edition)
     previous = next(iter(lines["from_edition"].drop_nulls()), None)
     races = select_own_races(results.views, previous, edition)
     races_by_crew = races.partition_by(CREW, as_dict=True, maintain_order=True)
@@ -199,7 +204,7 @@ def find_changed_options(results: Results, old: str | None, new: str) -> list[Di
     of_editions = dict(results.views.table("editions").select("edition", "method").rows())
     old_method = old.removeprefix(DRAFT) if old.startswith(DRAFT) else of_editions.get(old)
     before = known.get(old_method or results.methods[0])
-    return list(differences(known.get(new.removeprefix(DRAFT)), before))
+    return list(list_differences(known.get(new.removeprefix(DRAFT)), before))
 
 
 def find_decided_steps(changed: Sequence[Difference]) -> list[str]:
@@ -215,7 +220,7 @@ def describe_answer(line: Row, races: Sequence[Row], faults: Sequence[Row]) -> R
     """Return a line with all that its answer needs; see `read_answers`.
 
     Args:
-        line: a row of `warehouse.queries.answers.answers`.
+        line: a row of `warehouse.queries.answers.read_line_answers`.
         races: rows of `select_own_races` of its boat and crew.
         faults: rows of `season_diagnosis` of its season that a person should look at.
     """

@@ -7,7 +7,7 @@ import polars as pl
 
 from dashboards.queries.pages import pick_cause, sum_up_changes
 from dashboards.queries.results import Data
-from pipeline.method.variant import differences
+from pipeline.method.variant import list_differences
 from pipeline.register.register import name_draft
 from pipeline.register.replay import RaceRules
 from pipeline.tables.row import Row, pick_columns
@@ -38,11 +38,11 @@ def compare(
     for name in (old, new):
         is_published = name in published
         method_name = name.removeprefix(name_draft(""))
-        sides.append(read_edition(store, name) if is_published else known.named(method_name))
+        sides.append(read_edition(store, name) if is_published else known.find(method_name))
     old_side, new_side = sides
     before = old_side.method if isinstance(old_side, Edition) else old_side
     after = new_side.method if isinstance(new_side, Edition) else new_side
-    options = [] if before is None or after is None else list(differences(after, before))
+    options = [] if before is None or after is None else list(list_differences(after, before))
     data: Data = {"old": old, "new": new, "options": options, "effect": None}
     if not {old, new} <= {*published} and store.read_fingerprint("tows") is None:
         return data

@@ -11,7 +11,7 @@ from dashboards.queries.results import Data, Results
 from pipeline.messages import LANGUAGES
 from pipeline.method.definition import COMPLETE, Method
 from pipeline.method.options import START, STEP_ORDER, Steps, find_basis
-from pipeline.method.variant import Difference, differences
+from pipeline.method.variant import Difference, list_differences
 from pipeline.register.register import STUDIED_METHOD
 from pipeline.tables.row import Row
 from warehouse.queries.views import prepare_curve_figure
@@ -28,7 +28,7 @@ def read_method(results: Results, name: str) -> Data:
     first = known.get(results.views.table("methods")["method"][0])
     shown = known.get(name)
     ladder = results.views.table("correction_steps").filter(from_method=first.name, to_method=name)
-    changed = list(differences(shown, first))
+    changed = list(list_differences(shown, first))
     return {
         "method_name": name,
         "others": {
@@ -174,9 +174,9 @@ def describe_method(store_methods: KnownMethods, name_or_file: str, language: st
     Raises:
         HerijkError: there is no such method or file, or it has an error.
     """
-    shown = store_methods.named(name_or_file)
+    shown = store_methods.find(name_or_file)
     if shown.extends:
-        options = list(differences(shown, store_methods.get(shown.extends)))
+        options = list(list_differences(shown, store_methods.get(shown.extends)))
     else:
         options = [
             Difference(step, option, block.first, block.last, (), value)

@@ -18,7 +18,7 @@ from pipeline.register.causes import summarise_causes
 from pipeline.register.register import name_draft
 from pipeline.tables.keys import UNKNOWN_TYPE
 from pipeline.tables.row import Row, pick_columns
-from warehouse.queries.answers import compared, replayed
+from warehouse.queries.answers import compare_editions, compare_races
 from warehouse.queries.documents import (
     SMOOTH_SPEEDS,
     SPEEDS,
@@ -137,7 +137,7 @@ def read_proposal(
     results = Results(views)
     proposals = []
     for method in methods:
-        lines = compared(views, against, name_draft(method), letter["valid_from"])
+        lines = compare_editions(views, against, name_draft(method), letter["valid_from"])
         proposals.append(
             _describe_proposal(views, against, method, lines)
             | {"title": titles[method], "explained": read_method(results, method)}
@@ -208,7 +208,7 @@ def measure_effects(lines: pl.DataFrame, *by: str) -> pl.DataFrame:
 
 def _replay_races(views: Views, old: str, new: str) -> Data:
     """Return who wins the races of the last season, and how many results change place."""
-    winners, (n_moved, n_results) = replayed(views, old, new)
+    winners, (n_moved, n_results) = compare_races(views, old, new)
     last = winners.filter(pl.col("race_date").dt.year() == winners["race_date"].dt.year().max())
     names = dict(views.table("boats").select("fsn_no", "name").drop_nulls().rows())
     races = last.filter("winner_changed").select("race", "race_date")

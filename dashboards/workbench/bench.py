@@ -21,7 +21,13 @@ from pipeline.errors import HerijkError
 from pipeline.method.definition import Method, SeasonSteps
 from pipeline.method.options import Steps
 from pipeline.method.reading import list_shipped_methods
-from pipeline.method.variant import Difference, cut_at, differences, variant, write_variant_text
+from pipeline.method.variant import (
+    Difference,
+    cut_at,
+    list_differences,
+    variant,
+    write_variant_text,
+)
 from warehouse.queries.history import Draft, History
 from warehouse.queries.scenario import Scenario
 from warehouse.store.editions import list_edition_names, read_edition, read_edition_method
@@ -88,7 +94,7 @@ class Bench:
         self.boats = history.boats.join(history.tows, on="fsn_no", how="semi").sort(
             "name", "fsn_no"
         )
-        self._draft = lru_cache(DRAFTS_KEPT)(history.under)
+        self._draft = lru_cache(DRAFTS_KEPT)(history.recompute_under)
 
     def read_address(self, query: Mapping[str, str]) -> Asked:
         """Return the question in an address; missing parts and unknown boats take defaults."""
@@ -122,7 +128,7 @@ class Bench:
 
     def list_changes(self, asked: Asked) -> list[Difference]:
         """Return the options that are not those of the base."""
-        return differences(self.make_method(asked), self.known.get(asked.base))
+        return list_differences(self.make_method(asked), self.known.get(asked.base))
 
     def compute_results(self, asked: Asked) -> Data:
         """Return the results of the chosen method beside those it is compared with.
@@ -132,13 +138,13 @@ class Bench:
         """
         scenario = self.compare_drafts(asked)
         curves = scenario.boat_curves(asked.boat)
-        spread = name_ends(scenario.both(lambda draft: draft.reproducibility))
+        spread = name_ends(scenario.concat_both(lambda draft: draft.reproducibility))
         return {
             "lines": scenario.register_lines,
             "summary": scenario.summary(),
             "season_changes": scenario.season_change(),
-            "log_factors": scenario.both(lambda draft: draft.made.log_factors),
-            "consistency": scenario.both(lambda draft: draft.type_consistency),
+            "log_factors": scenario.concat_both(lambda draft: draft.made.log_factors),
+            "consistency": scenario.concat_both(lambda draft: draft.type_consistency),
             "repeats": spread,
             **sum_up_repeats(spread, SCENARIO),
             "curves": curves,

@@ -25,7 +25,7 @@ from dashboards.site import STATIC
 from dashboards.workbench.bench import Asked, Bench, Saving
 from dashboards.workbench.form import CONTROLS, Control
 from pipeline.errors import HerijkError
-from pipeline.messages import LANGUAGES, spoken
+from pipeline.messages import LANGUAGES, write_in_language
 from pipeline.method.definition import SeasonSteps
 from pipeline.method.reading import list_shipped_methods
 from warehouse.queries.views import Views
@@ -103,7 +103,7 @@ class BenchPage:
         except ValidationError as error:
             return {"refused": str(error.errors(include_url=False)[0]["msg"])}
         except HerijkError as error:
-            return {"refused": str(spoken(error, self.language))}
+            return {"refused": str(write_in_language(error, self.language))}
         base, data = self._bench.read_address(wanted.address).base, self._bench.store.root
         return {"command": f"herijk compare {base} {path} --data {data}"}
 
@@ -117,7 +117,7 @@ class BenchPage:
         except HerijkError as error:
             is_known = asked.base in (*list_shipped_methods(), *self._bench.known.own)
             usual = self._bench.read_address({"base": asked.base} if is_known else {})
-            return self._render(usual, None, str(spoken(error, self.language)))
+            return self._render(usual, None, str(write_in_language(error, self.language)))
 
     def _render(self, asked: Asked, results: dict[str, Any] | None, refused: str) -> str:
         bench = self._bench

@@ -69,7 +69,7 @@ def simulate(
     worlds: bool,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
-    from herijk.cli.progress import tows_counted
+    from herijk.cli.progress import show_tow_count
     from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
 
@@ -81,7 +81,7 @@ def simulate(
     settings = world_settings(
         world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    with explain_machine_faults(directory), tows_counted() as counted:
+    with explain_machine_faults(directory), show_tow_count() as counted:
         truth = write_simulated_archive(directory, simulate_world(settings), counted)
     made = {"archive": str(directory), "truth": str(truth)}
     show("simulated", made, ("archive", "truth"))

@@ -206,7 +206,7 @@ def assess(
     from pipeline.method.definition import COMPLETE
     from pipeline.register.register import STUDIED_METHOD
     from warehouse.archive.acceptance import Acceptance, compose_line
-    from warehouse.editions.publish import latest_before
+    from warehouse.editions.publish import find_latest_before
     from warehouse.queries import assess as tows
     from warehouse.store.editions import read_edition
     from warehouse.store.methods import KnownMethods
@@ -216,7 +216,7 @@ def assess(
     if accept is not None and not accept.strip():
         raise click.UsageError(tell("say who accepts the tow: --accept NAME"))
     today = dt.date.today()
-    edition = None if method else latest_before(store, today, today)
+    edition = None if method else find_latest_before(store, today, today)
     in_force = None if edition is None else read_edition(store, edition).method
     chosen = in_force or KnownMethods.from_store(store).get(method or STUDIED_METHOD)
     found = tows.assess(store, archive, tow_id, chosen)

@@ -8,9 +8,9 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Final
 
-from assets.settings import applied
+from assets.settings import choose_methods
 from pipeline.errors import HerijkError
-from pipeline.messages import LANGUAGE, say, spoken, tell
+from pipeline.messages import LANGUAGE, say, tell, write_in_language
 from warehouse.archive.check import CauseReport, CheckReport, check_archive
 from warehouse.queries.reports import rebuild_report
 from warehouse.store.lock import hold_write_lock
@@ -70,7 +70,9 @@ def _list_findings(store: Store) -> Iterator[Finding]:
     said = tell("{:.1f} GB free at {}", free / 2**30, nearest)
     yield Finding(say("disk"), free >= MIN_FREE_BYTES, said)
     known = KnownMethods.from_store(store)
-    yield _look_at(say("settings"), lambda: tell("applies {}", ", ".join(applied(store.root))))
+    yield _look_at(
+        say("settings"), lambda: tell("applies {}", ", ".join(choose_methods(store.root)))
+    )
     for name in known.own:
         yield _look_at(tell("method {}", name), lambda: known.get(name).title)  # noqa: B023
     if store.root.is_dir():
@@ -83,7 +85,7 @@ def _look_at(what: str, look: Callable[[], str]) -> Finding:
     try:
         return Finding(what, True, look())
     except (HerijkError, OSError) as error:
-        return Finding(what, False, spoken(error, LANGUAGE.get()))
+        return Finding(what, False, write_in_language(error, LANGUAGE.get()))
 
 
 def _check_lock(store: Store) -> str:

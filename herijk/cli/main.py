@@ -23,8 +23,8 @@ from herijk.cli.methods import compare, methods
 from herijk.cli.registers import publish, register, seasons, verify
 from herijk.cli.running import rebuild, serve, workbench
 from herijk.cli.speaking import Command, Group, argument, option
-from pipeline.errors import HerijkError, unexpected
-from pipeline.messages import LANGUAGE, say, spoken, tell
+from pipeline.errors import HerijkError, describe_unforeseen
+from pipeline.messages import LANGUAGE, say, tell, write_in_language
 from warehouse.store.machine_faults import REASSURANCE, explain_machine_faults
 
 INTERRUPTED: Final = 130
@@ -88,19 +88,19 @@ def main() -> None:
         with explain_machine_faults(Path(os.environ.get("HERIJK_DATA", "data"))):
             sys.exit(app.main(standalone_mode=False))
     except HerijkError as error:
-        click.echo(f"herijk: {spoken(error, LANGUAGE.get())}", err=True)
+        click.echo(f"herijk: {write_in_language(error, LANGUAGE.get())}", err=True)
         sys.exit(1)
     except click.ClickException as error:
         error.show()
         sys.exit(error.exit_code)
     except click.Abort:
-        _stopped()
+        _exit_stopped()
     except SystemExit:
         raise
     except BaseException as error:  # a panic of a library in Rust is no Exception
         if _is_interrupt(error):
-            _stopped()
-        click.echo(f"herijk: {_written_down(error)}", err=True)
+            _exit_stopped()
+        click.echo(f"herijk: {_write_down(error)}", err=True)
         sys.exit(1)
 
 
@@ -110,13 +110,13 @@ def _is_interrupt(error: BaseException) -> bool:
     return is_query or type(error).__name__ == "DagsterExecutionInterruptedError"
 
 
-def _stopped() -> NoReturn:
+def _exit_stopped() -> NoReturn:
     said = tell("stopped as requested. {} Run it again to continue", REASSURANCE)
     click.echo(f"herijk: {said}", err=True)
     sys.exit(INTERRUPTED)
 
 
-def _written_down(error: BaseException) -> str:
+def _write_down(error: BaseException) -> str:
     """Return a sentence about an error that nobody foresaw, and where to read the rest."""
     import tempfile
     import traceback
@@ -127,6 +127,6 @@ def _written_down(error: BaseException) -> str:
         file.write("".join(traceback.format_exception(error)))
     return tell(
         "{}. Nothing was published. Details are in {}; please send it to the maintainer of Herijk",
-        unexpected(error),
+        describe_unforeseen(error),
         file.name,
     )

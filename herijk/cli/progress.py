@@ -47,7 +47,7 @@ def rebuild_shown() -> Iterator[None]:
 
 
 @contextmanager
-def tows_counted() -> Iterator[Callable[[int, int], None]]:
+def show_tow_count() -> Iterator[Callable[[int, int], None]]:
     """Give a function that shows a number of tows done, out of so many."""
     with _open_bar() as bar:
         task = bar.add_task(tell("tows"))

@@ -151,7 +151,7 @@ def publish(
     else:
         chosen = KnownMethods.from_store(store).get(str(method))
         folder = editions.publish(store, chosen, terms, carry)
-    made = editions.published(store, folder)
+    made = editions.summarize_published(store, folder)
     data = vars(made) | {"simulated": made.manifest.simulated}
     show("published", data, tuple(vars(made)))
 

@@ -9,7 +9,7 @@ import click
 from herijk.cli.options import Seasons, archive_option, data_option, form_options, show
 from herijk.cli.speaking import Command, flag, option
 from pipeline.errors import BrokenPromiseError, NoTowsYetError
-from pipeline.messages import LANGUAGE, spoken, tell
+from pipeline.messages import LANGUAGE, tell, write_in_language
 from warehouse.store.machine_faults import explain_machine_faults
 
 if TYPE_CHECKING:
@@ -36,18 +36,18 @@ def rebuild(archive: Path, store: "Store", methods: tuple[str, ...], seasons: ra
     """From the archive to registers and tables; only what changed is done again."""
     from assets.rebuild import rebuild as run
     from assets.report import failed_checks
-    from assets.settings import applied
+    from assets.settings import choose_methods
     from herijk.cli.progress import rebuild_shown
     from warehouse.queries.reports import rebuild_report
     from warehouse.store.methods import KnownMethods
 
     known = KnownMethods.from_store(store)
-    chosen = applied(store.root, list(map(known.keep, methods)))
+    chosen = choose_methods(store.root, list(map(known.keep, methods)))
     try:
         with explain_machine_faults(store.root), rebuild_shown():
             news = run(archive, store.root, chosen, seasons)
     except NoTowsYetError as error:  # a new archive is no failure
-        show("no_tows", {"reason": spoken(error, LANGUAGE.get())}, ("reason",))
+        show("no_tows", {"reason": write_in_language(error, LANGUAGE.get())}, ("reason",))
         return
     report = rebuild_report(store)
     data = {

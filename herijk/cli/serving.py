@@ -76,7 +76,7 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     if what.host not in LOOPBACK:
-        tell(say(EXPOSED, host=what.host).spoken(LANGUAGE.get()))
+        tell(say(EXPOSED, host=what.host).write_in(LANGUAGE.get()))
     listen(LOOPBACK[0], what.port).close()  # told now, not by a child
     with _site(what), _dagster(what, home) as children:
         tell(f"Site: {what.site}/index.html")

@@ -18,7 +18,7 @@ HELP: Final = "Show this message and exit."
 EXAMPLES: Final = say("Examples")
 
 
-def language_of(arguments: Sequence[str], environment: Mapping[str, str]) -> str:
+def find_language(arguments: Sequence[str], environment: Mapping[str, str]) -> str:
     """Return the language that `--lang` asks for, or else that of the system: `nl` or `en`."""
     get = environment.get
     system = get("LC_ALL") or get("LC_MESSAGES") or get("LANG") or ""
@@ -104,7 +104,7 @@ class Group(Command, click.Group):
     ) -> click.Context:
         """Read the arguments, from here on in the language that they ask for."""
         if parent is None:
-            speak(language_of(args, os.environ))
+            speak(find_language(args, os.environ))
             translate_help(self)
         return super().make_context(info_name, args, parent, **extra)
 

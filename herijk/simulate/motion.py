@@ -117,7 +117,7 @@ def simulate_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueR
         steering = _bump(
             "steering", grid_s, defects.steering_share, streams[Component.STEERING], noted
         )
-        start_s, end_s = _undisturbed(noted)
+        start_s, end_s = _find_undisturbed(noted)
         runs.append(
             TrueRun(
                 truth=RunTruth(run, direction, target_m_s, start_s, end_s, tuple(noted)),
@@ -204,7 +204,7 @@ def _steering_peaks(grid_s: Floats, defects: Defects, rng: np.random.Generator) 
     return force
 
 
-def _undisturbed(noted: list[Disturbance]) -> tuple[float, float]:
+def _find_undisturbed(noted: list[Disturbance]) -> tuple[float, float]:
     """Return the part of the run between the disturbances at its start and those at its end."""
     middle_s = RUN_SECONDS / 2
     starts = [d.end_s for d in noted if d.start_s < middle_s]

@@ -56,24 +56,24 @@ Cause = tuple[str, ...]
 """A text, and what goes between its braces."""
 
 
-def _instead_of(unit: str, meant: str) -> Cause:
+def _name_wrong_unit(unit: str, meant: str) -> Cause:
     """Return the cause that a number in one unit is read as in another."""
     return say("{} instead of {}"), unit, meant
 
 
 _UNIT_RATIOS: Final[dict[str, dict[Cause, float]]] = {
     "force": {
-        _instead_of("kgf", "N"): 9.80665,
-        _instead_of("daN", "N"): 10.0,
-        _instead_of("lbf", "N"): 4.4482216,
-        _instead_of("kN", "N"): 1e3,
+        _name_wrong_unit("kgf", "N"): 9.80665,
+        _name_wrong_unit("daN", "N"): 10.0,
+        _name_wrong_unit("lbf", "N"): 4.4482216,
+        _name_wrong_unit("kN", "N"): 1e3,
         (say("a gain of two"),): 2.0,
     },
     "wind": {
-        _instead_of("km/h", "m/s"): 3.6,
-        _instead_of(say("knots"), "m/s"): 1.9438445,
-        _instead_of("mph", "m/s"): 2.2369363,
-        _instead_of("ft/s", "m/s"): 3.2808399,
+        _name_wrong_unit("km/h", "m/s"): 3.6,
+        _name_wrong_unit(say("knots"), "m/s"): 1.9438445,
+        _name_wrong_unit("mph", "m/s"): 2.2369363,
+        _name_wrong_unit("ft/s", "m/s"): 3.2808399,
     },
 }
 """Ratio of the two units. kgf and daN differ by 2 % and are named together."""
@@ -174,7 +174,7 @@ def plausibility(tows: Tows, crew_classes: pl.DataFrame = STANDARD_CREWS) -> tup
     return tuple(shifts)
 
 
-_RADIANS: Final = (_instead_of(say("radians"), say("degrees")),)
+_RADIANS: Final = (_name_wrong_unit(say("radians"), say("degrees")),)
 TURNED: Final = (("a vane that is turned",),)
 _MIN_TURN_DEG: Final = {"season": 45.0, "tow": 90.0}
 """Where the wind out and back together comes from at least, for the vane to be turned (inferred):

@@ -103,7 +103,7 @@ def summarize_tows(tows: Tows, crew_classes: pl.DataFrame = STANDARD_CREWS) -> T
     ln_gps = _find_season_gps(tows, log_m_s, is_used)
     by_gps = (2.0 + USUAL_BEND) * np.nan_to_num(ln_gps)
 
-    is_windy = is_used & tows.measured("wind")[tows.tow]
+    is_windy = is_used & tows.has_channel("wind")[tows.tow]
     ahead = whole.mean("wind_x") / speed_m_s
     abeam = whole.mean("wind_y") / speed_m_s
     wind_ahead = tows.mean_of_ways(ahead, is_windy) - 1.0

@@ -179,10 +179,10 @@ def stack_blocks(
     seconds = int(second.max()) + 1 if len(second) else 0
     cell = place.drop_nulls().to_numpy() * seconds + second
 
-    def placed(values: pl.Series) -> FloatArray:
+    def place_seconds(values: pl.Series) -> FloatArray:
         cells = np.zeros(runs.height * seconds)
         cells[cell] = values.to_numpy()[known]
         return cells.reshape(runs.height, seconds)
 
-    sums = OnDemand(SUM_NAMES, lambda name: placed(column(name)))
-    return RunBlocks(runs.drop("row"), placed(blocks["n"]), sums)
+    sums = OnDemand(SUM_NAMES, lambda name: place_seconds(column(name)))
+    return RunBlocks(runs.drop("row"), place_seconds(blocks["n"]), sums)

@@ -76,7 +76,7 @@ class Tows:
         """Return a number of each run's tow, shape (runs,); NaN where it is not known."""
         return self.get_of_tows(column)[self.tow]
 
-    def measured(self, channel: str) -> BoolArray:
+    def has_channel(self, channel: str) -> BoolArray:
         """Return which tows have a channel, `wind` or `log2`, shape (tows,)."""
         return np.asarray(
             self.get_of_tows(f"{channel}_measured") != 0.0

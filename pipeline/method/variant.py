@@ -17,10 +17,10 @@ from pipeline.method.reading import (
     read_shipped_method,
 )
 from pipeline.method.writing import (
-    covered,
     key_lines,
     range_text,
     step_lines,
+    write_covered_seasons,
     write_method_text,
     write_override_lines,
 )
@@ -88,7 +88,7 @@ def variant(
     )
 
 
-def differences(method: Method, parent: Method) -> list[Difference]:
+def list_differences(method: Method, parent: Method) -> list[Difference]:
     """Return options in which a method differs from another that covers its seasons.
 
     Returns:
@@ -146,15 +146,15 @@ def write_variant_text(method: Method) -> str:
             "title": method.title,
             "description": method.description,
             "extends": method.extends,
-            "seasons": covered(method),
+            "seasons": write_covered_seasons(method),
         }
     )
     parent = parse_method("\n".join(head), f"{method.name}.toml")
     changed: dict[str, dict[str, dict[str, object]]] = {}
-    for one in differences(method, parent):
+    for one in list_differences(method, parent):
         steps = changed.setdefault(range_text(one.first, one.last), {})
         steps.setdefault(one.step, {})[one.option] = one.after
-    everywhere = changed.pop(covered(method), {})
+    everywhere = changed.pop(write_covered_seasons(method), {})
     inherited = parent.validity.model_dump()
     rule = {k: v for k, v in method.validity.model_dump().items() if v != inherited[k]}
     blocks = [head]

@@ -17,7 +17,7 @@ def write_method_text(method: Method) -> str:
         "title_en": method.title_en,
         "description": method.description,
         "description_en": method.description_en,
-        "seasons": covered(method),
+        "seasons": write_covered_seasons(method),
     }
     if method.published_in is not None:
         first, last = method.published_in
@@ -48,7 +48,7 @@ def write_new_method_text(name: str, base: Method) -> str:
         "title": name,
         "description": "",
         "extends": base.name,
-        "seasons": covered(base),
+        "seasons": write_covered_seasons(base),
     }
     lines = key_lines(head) + [BEGINNING, f"# What {base.name} says:"]
     for block in base.ranges:
@@ -80,7 +80,7 @@ def key_lines(values: Mapping[str, object]) -> list[str]:
     ]
 
 
-def covered(method: Method) -> str:
+def write_covered_seasons(method: Method) -> str:
     """Return all seasons of a method, as method files write them."""
     return range_text(method.ranges[0].first, method.ranges[-1].last)
 

@@ -69,12 +69,12 @@ def _measure_wind_ratios(c: Computed) -> pl.DataFrame:
     """
     tows, wind = c.tows, c.means.wind_m_s
     is_windy = c.used & (wind > 0) & (c.speed_m_s > 0)
-    is_windy &= (tows.measured("wind") & tows.trusted)[tows.tow]
+    is_windy &= (tows.has_channel("wind") & tows.trusted)[tows.tow]
     by_gps = tows.count(is_windy & np.isfinite(c.means.gps_m_s)) == tows.count(is_windy)
     speed = np.where(by_gps[tows.tow], c.means.gps_m_s, c.speed_m_s)
     mean_speed = tows.mean_of_ways(np.where(is_windy, speed, 1.0), is_windy)
     angle = np.radians(c.means.wind_angle_deg)
-    log_sd = np.nan_to_num(c.estimated("ln_sd"), nan=UNKNOWN_LOG_SD)
+    log_sd = np.nan_to_num(c.get_estimated("ln_sd"), nan=UNKNOWN_LOG_SD)
     return tows.frame.select(
         "season",
         ahead=pl.Series(tows.mean_of_ways(wind * np.cos(angle), is_windy) / mean_speed),

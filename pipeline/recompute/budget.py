@@ -59,7 +59,7 @@ def estimate_wind_coefficient_sd(c: Computed) -> float:
     """
     residual, is_used, on_curve = _compute_residuals(c)
     tows = c.tows
-    is_usable = is_used & (tows.trusted & tows.measured("wind"))[:, None]
+    is_usable = is_used & (tows.trusted & tows.has_channel("wind"))[:, None]
     direction = tows.group_by_tow(tows.direction.astype(np.float64))
     is_out, is_back = is_usable & (direction > 0), is_usable & (direction < 0)
     felt_per_unit = tows.group_by_tow(c.refer_to_true_speed(c.means.air.ahead + c.means.air.behind))
@@ -231,7 +231,7 @@ def _make_inputs_at_any_speed(
 ) -> pl.DataFrame:
     """Return what the budget needs of each tow as far as it is the same at any speed."""
     tows = c.tows
-    has_log = np.isfinite(c.estimated("ln_sd"))
+    has_log = np.isfinite(c.get_estimated("ln_sd"))
     usual_bend = np.full(tows.size, USUAL_BEND)
     tow_log_sd = np.zeros(tows.size)
     if factors is not None:
@@ -240,7 +240,7 @@ def _make_inputs_at_any_speed(
             factors.get_tow_log_sd(tows.get_of_tows("season")), estimate_files_log_sd(c)
         )
         tow_log_sd = np.where(c.speed.is_calibrated, 0.0, log_sd)
-    bend = np.where(np.isfinite(c.estimated("bend")), c.estimated("bend"), usual_bend)
+    bend = np.where(np.isfinite(c.get_estimated("bend")), c.get_estimated("bend"), usual_bend)
 
     net_air = c.air_kg_m - c.still_air_kg_m
     # A larger coefficient takes more off as felt and puts more back for still air.
@@ -254,14 +254,14 @@ def _make_inputs_at_any_speed(
         random_dof=pl.Series(scatter.dof),
         bend=pl.Series(bend),
         calibrated=pl.Series(c.speed.is_calibrated),
-        askew_ratio=pl.Series(c.estimated("askew_ratio")).fill_nan(None),
-        log_sd=pl.Series(np.where(has_log, c.estimated("ln_sd"), 0.0)),
+        askew_ratio=pl.Series(c.get_estimated("askew_ratio")).fill_nan(None),
+        log_sd=pl.Series(np.where(has_log, c.get_estimated("ln_sd"), 0.0)),
         tow_log_sd=pl.Series(tow_log_sd),
         net_air_kg_m=pl.Series(tows.mean(net_air, c.used)),
         air_per_coefficient_kg_m=pl.Series(tows.mean(still_per_unit - felt_per_unit, c.used)),
         still_air_kg_m=pl.Series(tows.mean(c.still_air_kg_m, c.used)),
         wind_ln_sd=pl.Series(c.air.anemometer_ln_sd).fill_nan(None),
-        wind_measured=pl.Series(tows.measured("wind")),
+        wind_measured=pl.Series(tows.has_channel("wind")),
         unmeasured_wind=pl.Series(c.air.unrecorded_sd),
         temperature_known=pl.Series(c.temperature.is_known),
         water_off_c=pl.Series(c.water_off_c),

@@ -117,7 +117,7 @@ class Computed:
         pairs = np.stack([self.plan.which, self.tows.get_of_tows("season")])
         return np.unique(pairs, axis=1, return_inverse=True)[1].ravel()
 
-    def estimated(self, name: str) -> FloatArray:
+    def get_estimated(self, name: str) -> FloatArray:
         """Return a column of `instruments`, shape (tows,); NaN where nothing was estimated."""
         return self.instruments[name].cast(pl.Float64).to_numpy()
 
@@ -185,7 +185,7 @@ class Computed:
         """Return the air part that is taken off with given coefficients, shape (runs,)."""
         side = self.plan.run_options.wind.side
         felt = self.refer_to_true_speed(self.means.air.total(drag.ahead, drag.behind, side))
-        is_missing = self.options.expects_unrecorded & ~self.tows.measured("wind")
+        is_missing = self.options.expects_unrecorded & ~self.tows.has_channel("wind")
         net_ratio = self.air.unrecorded_ratio[self.tows.tow]
         expected = (1.0 + net_ratio) * self.still_unit_kg_m * drag.ahead
         return np.where(is_missing[self.tows.tow], expected, felt)
@@ -194,7 +194,7 @@ class Computed:
         """Return net wind correction / still-air part, shape (tows,); NaN without an anemometer."""
         put_back = self.tows.mean(self.still_air_kg_m, self.used)
         net = self.tows.mean(self.air_kg_m, self.used) - put_back
-        is_known = self.tows.measured("wind") & self.tows.trusted & (put_back > 0)
+        is_known = self.tows.has_channel("wind") & self.tows.trusted & (put_back > 0)
         return np.where(is_known, net / np.where(is_known, put_back, 1.0), np.nan)
 
     # Points and curve

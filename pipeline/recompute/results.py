@@ -75,18 +75,18 @@ def build_tables(
     """Make the tables of a method; tows are assessed when all curves are there."""
     name = pl.lit(method.name).alias("method")
 
-    def named(frame: pl.DataFrame) -> pl.DataFrame:
+    def add_method(frame: pl.DataFrame) -> pl.DataFrame:
         return frame.select(name, pl.all())
 
     pooled = estimated is not None
-    run_points = choose_repeated_runs(named(_make_run_points(c)))
+    run_points = choose_repeated_runs(add_method(_make_run_points(c)))
     speed_ratios = CURVE_SPEED_RATIOS if with_bands else (DECLARED,)
     inputs = make_budget_inputs(c, estimated, speed_ratios).filter(pl.col("cw_kg_m").is_finite())
     declared_inputs = inputs.filter(speed_ratio=DECLARED)
     assumed = get_assumed(c, estimated)
     bounds = combine(inputs, assumed)
     at_v0 = make_budget(declared_inputs, assumed)
-    curves = named(_make_curves(c, bounds.filter(speed_ratio=DECLARED), pooled))
+    curves = add_method(_make_curves(c, bounds.filter(speed_ratio=DECLARED), pooled))
     curves = add_best_estimates(curves, estimated, at_v0, declared_inputs)
     of_logs = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
     diagnosis = pl.concat([of_logs, diagnose_anemometers(c)]).sort("season", "part", "instrument")
@@ -99,19 +99,21 @@ def build_tables(
     return Recomputed(
         run_points=run_points,
         curves=add_status(curves, assessments, rejecting),
-        log_factors=named(_make_log_factors(c, estimated)),
+        log_factors=add_method(_make_log_factors(c, estimated)),
         assessments=assessments,
         uncertainty_budget=at_v0.select(
             name,
             pl.exclude("speed_ratio", "dof"),
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
-        curve_points=named(_make_curve_points(inputs, bounds)) if with_bands else pl.DataFrame(),
+        curve_points=add_method(_make_curve_points(inputs, bounds))
+        if with_bands
+        else pl.DataFrame(),
         tow_currents=currents,
-        season_diagnosis=named(diagnosis),
-        season_links=named(links),
-        tow_instruments=named(instruments),
-        best_estimate_weights=named(weights),
+        season_diagnosis=add_method(diagnosis),
+        season_links=add_method(links),
+        tow_instruments=add_method(instruments),
+        best_estimate_weights=add_method(weights),
         factors=estimated,
     )
 
@@ -122,7 +124,7 @@ def _make_run_points(c: Computed) -> pl.DataFrame:
     on_curve = curve.cw(c.curves.a_kg_m[tow], c.curves.s_s2_m2[tow], c.speed_m_s)
     log1 = np.where(has_window, means.speed_m_s, 1.0)
     has_limits = c.plan.run_options.run.is_trimmed
-    has_wind, has_log2 = c.tows.measured("wind")[tow], c.tows.measured("log2")[tow]
+    has_wind, has_log2 = c.tows.has_channel("wind")[tow], c.tows.has_channel("log2")[tow]
     log2_ratio = means.log2_m_s / log1
     has_log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
     numbers = {

@@ -120,7 +120,7 @@ def make_observations(c: Computed, ln_factor: Mapping[str, float]) -> pl.DataFra
     ln_cw_by_log = 2.0 + 2.0 * q
     q_by_log = 2.0 * q * (1.0 + q)
     still_air = tows.mean(c.still_air_kg_m, c.used)
-    wind_sd = np.where(tows.measured("wind"), 0.0, still_air * c.air.unrecorded_sd) / cw
+    wind_sd = np.where(tows.has_channel("wind"), 0.0, still_air * c.air.unrecorded_sd) / cw
     point_variance = np.where(has_errors, errors.c0_variance_kg2_m2 / cw**2, 1.0)
     ln_cw_sd = np.sqrt(point_variance + (ln_cw_by_log * log_sd) ** 2 + wind_sd**2)
     q_variance = np.maximum(errors.q_variance, with_misfit.q_variance)

@@ -56,7 +56,7 @@ def summarize_table(schema: type[dy.Schema]) -> str:
     return cleandoc(schema.__doc__ or "").partition("\n")[0]
 
 
-def ordered(name: str, frame: pl.DataFrame) -> pl.DataFrame:
+def put_in_order(name: str, frame: pl.DataFrame) -> pl.DataFrame:
     """Return the declared columns of a table, in order, sorted by its key."""
     schema = TABLES[name]
     return frame.select(schema.column_names()).sort(schema.primary_key() or schema.column_names())
@@ -76,4 +76,4 @@ def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:
         for column, declared in schema.columns().items()
         if declared.dtype.is_integer() and frame.schema[column].is_integer()
     ]
-    return schema.validate(ordered(name, frame.with_columns(whole)))
+    return schema.validate(put_in_order(name, frame.with_columns(whole)))

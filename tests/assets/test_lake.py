@@ -4,7 +4,7 @@ import dagster as dg
 import polars as pl
 import pytest
 
-from assets.lake import Folders, Lake, incremental, outs
+from assets.lake import Folders, Lake, incremental, make_outs
 
 RAN: list[str] = []
 WORLD = {"numbers": [1.0, 2.0]}
@@ -26,7 +26,7 @@ def signs(numbers: pl.DataFrame) -> pl.DataFrame:
     return numbers.select(pl.col("x").sign())
 
 
-@dg.multi_asset(outs=outs("low", "high"), can_subset=True)
+@dg.multi_asset(outs=make_outs("low", "high"), can_subset=True)
 @incremental()
 def ends(signs: pl.DataFrame) -> dict[str, pl.DataFrame]:
     """Two tables of one computation."""

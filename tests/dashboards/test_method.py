@@ -14,7 +14,7 @@ from dashboards.reading import read_blocks
 from dashboards.templates import get_template
 from pipeline.method.options import Steps, find_basis
 from pipeline.method.reading import read_shipped_method
-from pipeline.method.variant import differences
+from pipeline.method.variant import list_differences
 from tests.conftest import METHODS
 from warehouse.queries.views import Views
 
@@ -40,7 +40,7 @@ def test_an_effect_is_the_median_of_the_tows_that_a_step_changes(built, explaine
 def test_every_step_is_explained_and_every_change_is_voted_on(explained):
     data = explained[METHOD]
     assert {one["step"] for one in data["steps"]} == set(Steps.model_fields)
-    changed = differences(read_shipped_method(METHOD), read_shipped_method(FIRST))
+    changed = list_differences(read_shipped_method(METHOD), read_shipped_method(FIRST))
     voted = [
         (one["step"], one["option"], one["first"])
         for steps in data["voted"].values()

@@ -19,7 +19,7 @@ from pipeline.register.causes import summarise_causes
 from pipeline.register.register import name_draft
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
-from warehouse.queries.answers import compared, line_changes, replayed
+from warehouse.queries.answers import compare_editions, compare_races, line_changes
 from warehouse.queries.views import Views
 
 PLAIN = {"sender": "", "date": None, "valid_from": None}
@@ -115,7 +115,7 @@ def proposed(views, methods, letter=PLAIN):
 def test_a_proposal_counts_every_line_that_changes(views):
     data = proposed(views, [METHODS[1]])
     (one,) = data["proposals"]
-    lines = compared(views, EDITIONS[0], name_draft(METHODS[1]))
+    lines = compare_editions(views, EDITIONS[0], name_draft(METHODS[1]))
     changed = lines.filter(change="changed").height
     texts = [block.text for block in everything(blocks_of("proposal", data))]
     assert any(f"{changed} of {lines.height} lines change" in text for text in texts)
@@ -128,7 +128,7 @@ def test_a_proposal_counts_every_line_that_changes(views):
 
 def test_a_proposal_names_the_causes_that_pages_name(views):
     old, new = map(name_draft, METHODS)
-    mine = summarise_causes(compared(views, old, new))
+    mine = summarise_causes(compare_editions(views, old, new))
     shown = summarise_causes(line_changes(views).filter(from_edition=old, to_edition=new))
     assert {"temperature", "wind"} & {cause["step"] for cause in mine}
     for one, other in zip(mine, shown, strict=True):
@@ -137,7 +137,7 @@ def test_a_proposal_names_the_causes_that_pages_name(views):
 
 def test_a_proposal_counts_flags_of_the_lines_that_are_voted_on(views, monkeypatch):
     """A flag of a tow that a newer one superseded is about no line."""
-    lines = compared(views, EDITIONS[0], name_draft(METHODS[1]))
+    lines = compare_editions(views, EDITIONS[0], name_draft(METHODS[1]))
     tows = lines.drop_nulls("new_cw_kg_m")["new_tow_id"]
     flagged = pl.DataFrame({"method": METHODS[1], "tow_id": [tows[0], tows[0], "superseded"]})
     ask = Views.ask
@@ -190,7 +190,7 @@ def test_a_proposal_is_a_letter_of_six_pages_at_most_with_the_method_as_its_anne
 
 
 def test_a_proposal_counts_places_as_the_pages_of_races_do(views):
-    _, (moved, results) = replayed(views, *EDITIONS)
+    _, (moved, results) = compare_races(views, *EDITIONS)
     rows = views.ask("races").filter(from_edition=EDITIONS[0], to_edition=EDITIONS[1])
     placed = rows.drop_nulls("new_rank")
     assert results == placed.height > 0
@@ -198,5 +198,5 @@ def test_a_proposal_counts_places_as_the_pages_of_races_do(views):
 
 
 def test_a_draft_that_could_not_be_made_has_no_results(views):
-    winners, moved = replayed(views, EDITIONS[0], name_draft("never-made"))
+    winners, moved = compare_races(views, EDITIONS[0], name_draft("never-made"))
     assert (winners["new_winner"].drop_nulls().to_list(), moved) == ([], (0, 0))

@@ -22,7 +22,7 @@ from tests.conftest import METHODS
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 from tests.texts import said
-from warehouse.queries.answers import answers, choose_newest_edition
+from warehouse.queries.answers import choose_newest_edition, read_line_answers
 from warehouse.queries.views import Views
 from warehouse.store.store import Store
 
@@ -105,7 +105,7 @@ def test_names_are_escaped_everywhere(site, attacked):
 
 
 def test_an_answer_is_told_all_that_it_says(results):
-    columns = answers(results.views, EDITIONS[-1]).columns
+    columns = read_line_answers(results.views, EDITIONS[-1]).columns
     assert LINE.keys() - {"objection"} <= set(columns)
 
 

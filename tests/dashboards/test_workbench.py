@@ -136,7 +136,7 @@ def test_the_register_of_a_saved_file_is_the_one_that_was_shown(workbench, histo
     shown = workbench.make_draft(asked(workbench, **changes)).register
     path = workbench.save(saving(changes=changes))
     read = parse_method(path.read_text(encoding="utf-8"), str(path))
-    again = dataclasses.replace(history, cache=RunCache()).under(read).register
+    again = dataclasses.replace(history, cache=RunCache()).recompute_under(read).register
     assert_frame_equal(again.drop("edition"), shown.drop("edition"))
 
 

@@ -13,7 +13,7 @@ from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from pipeline.errors import MissingKnowledgeError
 from pipeline.history import ERAS
-from pipeline.messages import speaker
+from pipeline.messages import make_translator
 from tests.conftest import Workbench
 from warehouse.queries.change_report import change_report
 from warehouse.store.boats import choose_boat, find_boats, match_names, suggest_names
@@ -217,8 +217,8 @@ def test_a_flag_of_a_line_is_shown_wherever_the_line_is(herijk, built):
 
 def test_runs_are_cut_and_boats_are_not_trimmed():
     last = ERAS[-1].measured
-    assert speaker("en")(last) == "dGPS, runs cut"
-    assert speaker("nl")(last) == "dGPS, metingen bijgeknipt"
+    assert make_translator("en")(last) == "dGPS, runs cut"
+    assert make_translator("nl")(last) == "dGPS, metingen bijgeknipt"
 
 
 # Old workbooks

@@ -11,7 +11,7 @@ import pytest
 
 from assets.settings import Settings
 from herijk.cli.main import app
-from pipeline.messages import LANGUAGES, speaker
+from pipeline.messages import LANGUAGES, make_translator
 from tests.architecture.repository import ROOT, read
 from tests.texts import said as texts_said
 from warehouse.archive.profile import parse_profiles
@@ -108,7 +108,10 @@ def test_lines_run(page, reader, type_in):
     titles = dict(re.findall(r"^\| ([^|]+?) \| (.+) \|$", table, re.MULTILINE)[2:])
     said = [text for file, (text, _) in texts_said() if file.startswith("dashboards/templates")]
     known = {
-        speaker(language)(text) for language in LANGUAGES for text in said if isinstance(text, str)
+        make_translator(language)(text)
+        for language in LANGUAGES
+        for text in said
+        if isinstance(text, str)
     }
     for title, described in titles.items():
         assert title in printed or title in known

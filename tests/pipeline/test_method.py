@@ -6,7 +6,7 @@ import re
 import pytest
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.messages import spoken
+from pipeline.messages import write_in_language
 from pipeline.method.reading import (
     MethodFileError,
     list_shipped_methods,
@@ -104,7 +104,7 @@ def test_every_error_says_where_what_and_what_is_allowed(case):
     assert [part for part in expected if part not in message] == [], message
     assert "\n" not in message
     assert "pydantic" not in message
-    dutch = spoken(caught.value, "nl")
+    dutch = write_in_language(caught.value, "nl")
     english = {"line", "missing", "must", "not", "key", "allowed", "season", "ranges"}
     assert not english & set(re.findall(r"[a-z]+", re.sub(r"'[^']*'", "", dutch))), dutch
 

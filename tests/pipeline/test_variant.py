@@ -5,7 +5,7 @@ import pytest
 from pipeline.method.definition import SeasonSteps
 from pipeline.method.options import Steps
 from pipeline.method.reading import MethodFileError, parse_method, read_shipped_method
-from pipeline.method.variant import cut_at, differences, variant, write_variant_text
+from pipeline.method.variant import cut_at, list_differences, variant, write_variant_text
 
 SEASONS = range(2009, 2019)
 
@@ -40,7 +40,7 @@ def test_a_change_of_all_seasons_is_one_line():
 def test_nothing_changed_is_the_method_itself():
     base = read_shipped_method("rebased")
     made = variant(base, "own", "t", "", cut_at(base, SEASONS))
-    assert differences(made, base) == []
+    assert list_differences(made, base) == []
     assert made.content_hash == base.content_hash
     with pytest.raises(MethodFileError, match="seasons"):
         variant(base, "own", "t", "", cut_at(base, SEASONS)[:-1])

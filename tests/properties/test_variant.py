@@ -9,7 +9,7 @@ from dashboards.workbench.form import CONTROLS as OF_MODEL
 from pipeline.method.definition import SeasonSteps
 from pipeline.method.options import Steps
 from pipeline.method.reading import list_shipped_methods, parse_method, read_shipped_method
-from pipeline.method.variant import cut_at, differences, variant, write_variant_text
+from pipeline.method.variant import cut_at, list_differences, variant, write_variant_text
 
 SEASONS = range(2008, 2020)
 CONTROLS = [(one.step, one) for one in OF_MODEL.values()]
@@ -68,7 +68,7 @@ def test_a_file_names_only_what_differs(made):
     for block in text.get("overrides", []):
         steps = {key: held for key, held in block.items() if key != "range"}
         named |= {(step, option) for step, held in steps.items() for option in held}
-    found = differences(method, base)
+    found = list_differences(method, base)
     assert named == {(one.step, one.option) for one in found}
     for one in found:
         changed = getattr(getattr(method.get_steps(one.first), one.step), one.option)

@@ -16,7 +16,7 @@ from tests.tables import compute_tables
 from tests.warehouse.edition_bench import DAY, terms
 from warehouse.editions.lineage import lineage
 from warehouse.editions.publish import publish_printed
-from warehouse.editions.verify import differences, verify
+from warehouse.editions.verify import find_differences, verify
 from warehouse.store.editions import find_chain_head, find_manifest, read_edition, read_manifest
 from warehouse.store.files import file_sha256
 
@@ -273,7 +273,7 @@ def test_forged_doubts_come_out_otherwise(published_copy):
 def test_a_line_that_is_there_twice_differs(published):
     register = read_edition(published.store, "2014-2").register
     twice = pl.concat([register, register.head(1)])
-    (row,) = differences(twice, register, LINE).iter_rows(named=True)
+    (row,) = find_differences(twice, register, LINE).iter_rows(named=True)
     assert (row["there"], row["there now"]) == (True, None)
 
 

@@ -41,7 +41,7 @@ def test_a_file_is_kept_under_its_name(known, tmp_path):
 def test_one_own_method_extends_another(known, tmp_path):
     known.keep(write(tmp_path / "draft.toml", OWN))
     child = OWN.replace('"ours"', '"theirs"').replace("rebased-2015", "ours").replace("0.3", "0.4")
-    method = known.named(write(tmp_path / "child.toml", child))
+    method = known.find(write(tmp_path / "child.toml", child))
     assert method.get_steps(2010).wind.side == 0.4
 
 
@@ -68,4 +68,4 @@ def test_a_file_with_the_name_of_another_method_is_refused(known):
 @pytest.mark.parametrize("name", ["best", "../ours", "no/such.toml"])
 def test_an_unknown_method_is_said(known, name):
     with pytest.raises(HerijkError, match="there is no method"):
-        known.named(name)
+        known.find(name)

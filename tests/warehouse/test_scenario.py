@@ -24,7 +24,7 @@ def history(built):
 
 @pytest.fixture(scope="module")
 def scenario(history):
-    return Scenario(*(history.under(read_shipped_method(name)) for name in METHODS))
+    return Scenario(*(history.recompute_under(read_shipped_method(name)) for name in METHODS))
 
 
 def test_a_draft_is_the_register_of_the_warehouse(scenario, built):
@@ -38,7 +38,7 @@ def test_a_draft_is_the_register_of_the_warehouse(scenario, built):
 
 @pytest.mark.parametrize("table", ["reproducibility", "type_consistency"])
 def test_statistics_are_those_of_the_warehouse(scenario, built, table):
-    found = scenario.both(lambda draft: getattr(draft, table))
+    found = scenario.concat_both(lambda draft: getattr(draft, table))
     assert_frame_equal(found, built.table(table).select(found.columns), check_row_order=False)
 
 
@@ -75,13 +75,15 @@ def test_a_boat_has_its_curves_under_both_methods(scenario, built):
 
 def test_a_method_that_no_tow_survives_is_shown_too(history, scenario, monkeypatch):
     monkeypatch.setattr("pipeline.recompute.computed.FEWEST_RUNS", 7)
-    nothing = history.under(parse_method(UNTOWABLE.format(base="rebased-2015"), "none.toml"))
+    nothing = history.recompute_under(
+        parse_method(UNTOWABLE.format(base="rebased-2015"), "none.toml")
+    )
     both = Scenario(scenario.before, nothing)
     summary = both.summary()
     assert summary["removed"] == summary["lines"] > 0
     assert summary["median_ratio"] is None
     kinds = (lambda draft: draft.type_consistency, lambda draft: draft.reproducibility)
-    for frame in (both.season_change(), *map(both.both, kinds)):
+    for frame in (both.season_change(), *map(both.concat_both, kinds)):
         assert isinstance(frame, pl.DataFrame)
     fsn_no = history.tows["fsn_no"][0]
     assert set(both.boat_figure(fsn_no)["method"]) == {scenario.before.method.name}

@@ -5,7 +5,7 @@ Everything that cannot be used becomes a `Fault` with a reason code; the format 
 described in `docs/archive.md`.
 """
 
-from warehouse.archive.faults import Failure, Fault, fault_from
+from warehouse.archive.faults import Failure, Fault, make_fault
 from warehouse.archive.files import FileHashes
 from warehouse.archive.index import ArchiveIndex, index_archive, list_archive_files
 from warehouse.archive.list_rules import read_published_registers, read_races
@@ -20,10 +20,10 @@ __all__ = [
     "FileHashes",
     "Profiles",
     "SeasonProfile",
-    "fault_from",
     "index_archive",
     "judge_samples",
     "list_archive_files",
+    "make_fault",
     "read_published_registers",
     "read_races",
     "read_tow_samples",

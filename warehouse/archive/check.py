@@ -12,9 +12,9 @@ from typing import Final
 
 import polars as pl
 
-from pipeline.messages import innermost, say, spoken
+from pipeline.messages import find_innermost, say, write_in_language
 from pipeline.tables.row import Row
-from warehouse.archive.faults import OF_A_HEADER, Fault, fault_from
+from warehouse.archive.faults import OF_A_HEADER, Fault, make_fault
 from warehouse.archive.files import PARTS, SAMPLES, list_files
 from warehouse.archive.index import ArchiveIndex, index_archive
 from warehouse.archive.list_rules import read_published_registers, read_races
@@ -134,7 +134,7 @@ def _check_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
         try:
             check_header(file.full_path, profile)
         except BaseException as error:
-            yield fault_from(error, file.path)
+            yield make_fault(error, file.path)
 
 
 def _check_first_tows(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fault]:
@@ -164,7 +164,7 @@ def _check_first_tows(root: Path, index: ArchiveIndex, wrong: set[str]) -> Itera
                 )
             yield from judge_samples(samples, place, tow, index.runs, defects).faults
         except BaseException as error:
-            yield fault_from(error, tow["samples_path"], tow_id)
+            yield make_fault(error, tow["samples_path"], tow_id)
 
 
 def _report_causes(
@@ -179,7 +179,7 @@ def _report_causes(
         cells: list[str] = []
         ask: list[str] = []
         for fault in same:
-            cell = getattr(innermost(fault.message), "values", {}).get("cell")
+            cell = getattr(find_innermost(fault.message), "values", {}).get("cell")
             if cell is not None:
                 cells.append(str(cell))
             ask += fault.ask
@@ -187,8 +187,8 @@ def _report_causes(
             reason_code=reason_code,
             number=len(same),
             tows=_count_tows(same, names_of),
-            sentence=spoken(innermost(same[0].message), language),
-            remedy=spoken(REMEDIES[reason_code], language),
+            sentence=write_in_language(find_innermost(same[0].message), language),
+            remedy=write_in_language(REMEDIES[reason_code], language),
             cells=list(dict.fromkeys(cells)),
             places=[Place(fault.path, fault.line, fault.tow_id) for fault in same[:SHOWN]],
             ask=list(dict.fromkeys(ask)),

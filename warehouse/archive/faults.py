@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields
 from typing import Final, Literal
 
 from pipeline.errors import DefectiveInputError
-from pipeline.messages import Sentence, find_cause, say, spoken
+from pipeline.messages import Sentence, find_cause, say, write_in_language
 from pipeline.tables.declare import dy
 from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import Faults
@@ -58,7 +58,7 @@ class Fault:
 
     def to_row(self) -> Row:
         """Return the fault as a row of `Faults`: only here it is worded in Dutch too."""
-        words = {"cause": self.cause, "message_nl": spoken(self.message, "nl")}
+        words = {"cause": self.cause, "message_nl": write_in_language(self.message, "nl")}
         facts = [fact.name for fact in fields(Fault) if fact.name != "ask"]
         return {name: getattr(self, name) for name in facts} | words
 
@@ -95,7 +95,7 @@ def say_at_line(line: int, what: str) -> Sentence:
     return say("Line {line}: {what}", line=line, what=what)
 
 
-def fault_from(error: BaseException, path: str, tow_id: str | None = None) -> Fault:
+def make_fault(error: BaseException, path: str, tow_id: str | None = None) -> Fault:
     """Return the fault an error stands for; `path` serves where the error knows none itself.
 
     Raises:

@@ -12,7 +12,7 @@ from pipeline.tables.declare import dy
 from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import ListedFiles, ListedRuns, ListedTows
 from warehouse.archive.columns import fold
-from warehouse.archive.faults import Fault, fault_from
+from warehouse.archive.faults import Fault, make_fault
 from warehouse.archive.files import (
     SAMPLES,
     ArchiveFile,
@@ -106,7 +106,7 @@ def index_archive(
     if not rows.unread:
         faults += _find_idle_settings(profiles, listed)
     told = {fault.path for fault in faults if fault.reason_code == "unreadable_file"}
-    faults += [fault_from(error, error.path) for error in unread if error.path not in told]
+    faults += [make_fault(error, error.path) for error in unread if error.path not in told]
     kinds = {file.path: _name_kind(file) for file in files}
     file_rows = [
         (path, kinds[path], sha256, size) for path, (sha256, size) in sorted(hashes.items())
@@ -204,7 +204,7 @@ def _find_unlisted_samples(
             fault = Fault(path=file.path, reason_code="samples_not_listed", message=message)
             faults.append(fault)
         else:
-            faults.append(fault_from(make_outside_archive_error(file.path), file.path))
+            faults.append(make_fault(make_outside_archive_error(file.path), file.path))
     return faults
 
 

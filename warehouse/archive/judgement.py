@@ -171,7 +171,9 @@ class Judgement:
         )
         self.faults.append(fault)
 
-    def lost(self, reason_code: str, message: Sentence, row: int = HEADER) -> DefectiveFileError:
+    def make_lost_error(
+        self, reason_code: str, message: Sentence, row: int = HEADER
+    ) -> DefectiveFileError:
         """Return the error for a tow that is lost whole."""
         path, line = self.place(row)
         return DefectiveFileError(reason_code, message, line, path)

@@ -18,7 +18,7 @@ from pipeline.tables.bases import TowFacts
 from pipeline.tables.frames import limits
 from pipeline.tables.lake import ListedBoats, ListedWindows
 from warehouse.archive.columns import fold_word
-from warehouse.archive.faults import Fault, fault_from, say_at_line
+from warehouse.archive.faults import Fault, make_fault, say_at_line
 from warehouse.archive.files import ArchiveFile, list_files
 from warehouse.archive.kinds import (
     ACCEPTANCES,
@@ -249,7 +249,7 @@ def read_within_border(
     try:
         return read(own)
     except BaseException as error:
-        fault = fault_from(error, own[0].path if own else kind.name)
+        fault = make_fault(error, own[0].path if own else kind.name)
         nothing, _ = read([])
         return nothing, [fault]
 

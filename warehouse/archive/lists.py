@@ -34,7 +34,7 @@ from warehouse.archive.columns import (
     split_line,
     split_lines,
 )
-from warehouse.archive.faults import Fault, fault_from, say_at_line
+from warehouse.archive.faults import Fault, make_fault, say_at_line
 from warehouse.archive.files import (
     REFUSED_SUFFIXES,
     TEXT_SUFFIXES,
@@ -105,7 +105,7 @@ def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles)
         try:
             tables, notes = read_tables(file, columns)
         except BaseException as error:
-            tables, notes = [], [fault_from(error, file.path)]
+            tables, notes = [], [make_fault(error, file.path)]
             found.unread.add(file.path)
         found.faults += notes
         for table in tables:
@@ -116,7 +116,7 @@ def read_lists(files: Iterable[ArchiveFile], kind: ListKind, profiles: Profiles)
                 _check_columns(renamed, columns, places, profiles)
                 found.add(_parse_rows(renamed, file, kind, places, profiles))
             except BaseException as error:
-                found.faults.append(fault_from(error, file.path))
+                found.faults.append(make_fault(error, file.path))
                 found.unread.add(file.path)
     return found
 

@@ -268,7 +268,7 @@ def _check_whole_tow(judgement: Judgement) -> None:
     low, high = USUAL["force"].times(intended_m_s, np.nan)
     if low <= -force_n <= high:
         said = say("The force is {:.0f} N in a typical run; it must be positive.", force_n)
-        raise judgement.lost("negative_force", said, runs[0].start)
+        raise judgement.make_lost_error("negative_force", said, runs[0].start)
     _check_exchanged(judgement, intended_m_s)
     _check_held_as_a_fix(judgement)
     _check_against_plan(judgement)
@@ -279,7 +279,7 @@ def _check_whole_tow(judgement: Judgement) -> None:
             "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
             "looks like km/h under another header."
         )
-        raise judgement.lost("speed_unit", say(text, ratio, least, most))
+        raise judgement.make_lost_error("speed_unit", say(text, ratio, least, most))
 
 
 def _check_held_as_a_fix(judgement: Judgement) -> None:
@@ -298,7 +298,9 @@ def _check_held_as_a_fix(judgement: Judgement) -> None:
                 "Columns '{}' and 'gps' seem to be exchanged: the first changes {:.1f} times a "
                 "second, the second {:.0f} times."
             )
-            raise judgement.lost("swapped_columns", say(text, COLUMN_OF[key], other_hz, gps_hz))
+            raise judgement.make_lost_error(
+                "swapped_columns", say(text, COLUMN_OF[key], other_hz, gps_hz)
+            )
 
 
 def _check_against_plan(judgement: Judgement) -> None:
@@ -317,7 +319,7 @@ def _check_against_plan(judgement: Judgement) -> None:
                 "the planned speeds, and the first does not."
             )
             said = say(text, COLUMN_OF[key], COLUMN_OF[wind])
-            raise judgement.lost("swapped_columns", said)
+            raise judgement.make_lost_error("swapped_columns", said)
 
 
 def _measure_spread(runs: list[Run], key: str, power: int) -> float:
@@ -339,7 +341,7 @@ def _check_exchanged(judgement: Judgement, intended_m_s: float) -> None:
             text = say("Columns '{}' and '{}' seem to be exchanged: {seen}.")
             seen = say("typically they hold {:.4g} and {:.4g}", typical[one][0], typical[other][0])
             said = say(text, COLUMN_OF[one], COLUMN_OF[other], seen=seen)
-            raise judgement.lost("swapped_columns", said)
+            raise judgement.make_lost_error("swapped_columns", said)
 
 
 def _find_implausible(typical: Mapping[str, NDArray[np.floating]], intended_m_s: float) -> set[str]:

@@ -44,7 +44,7 @@ class Finding:
     Attributes:
         edition: the edition.
         kind: `altered` (the edition), `missing` or `swapped` (what it was made from), `differs`
-            (made again, another number), `unchecked` or `notice`.
+            (made again, another number), `report_unchecked` or `notice`.
         where: file, tow or line.
         message: what is seen, what it was, what to do.
         wrong: whether a promise is broken; a notice breaks none.
@@ -206,7 +206,7 @@ def check_sources(
             tows = read_table(path, "tows")
             sources = sources | dict(list_samples_files(tows).select("path", "sha256").rows())
         except READING_ERRORS as error:
-            yield unchecked(path.name, error)
+            yield report_unchecked(path.name, error)
     for file, sha256 in sorted(sources.items()):
         if not (archive / file).is_file():
             message = say("{} is gone from the archive; put it back", file)
@@ -219,7 +219,7 @@ def check_sources(
                 yield Finding(path.name, "swapped", file, message)
 
 
-def unchecked(name: str, error: BaseException) -> Finding:
+def report_unchecked(name: str, error: BaseException) -> Finding:
     """Return the finding that an edition cannot be made again, and why."""
     reason = (str(error) or type(error).__name__).splitlines()[0]
     return Finding(name, "unchecked", "register", say("it cannot be made again: {}", reason))

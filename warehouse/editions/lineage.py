@@ -10,7 +10,7 @@ import polars as pl
 from pipeline.errors import MissingKnowledgeError
 from pipeline.register.register import LINE
 from pipeline.tables.row import Row
-from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed
+from warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, print_cells
 from warehouse.store.boats import choose_boat, find_boats
 from warehouse.store.editions import Manifest, get_edition_path, read_edition
 from warehouse.store.store import Store
@@ -23,7 +23,7 @@ class Lineage:
     Attributes:
         about: what the edition says of itself, but for the hashes of its files.
         folder: where it lies.
-        lines: the boat's lines, each with the `line` itself, as it is `printed` by header, its
+        lines: the boat's lines, each with the `line` itself, as it is `print_cells` by header, its
             verification `code`, its `tow`, `path` and `sha256` of its samples `files`, its `runs`
             (rows of `run_points`) and its `curve`. Where no tow of the archive is behind it the tow
             and curve are None and the lists empty.
@@ -54,7 +54,9 @@ def lineage(store: Store, edition: str, boat: str) -> Lineage:
 
     own = published.register.filter(pl.col("fsn_no") == choose_boat(boats, boat)).sort(LINE)
     lines = []
-    for line, cells in zip(own.to_dicts(), printed(own, REGISTER_FIELDS).to_dicts(), strict=True):
+    for line, cells in zip(
+        own.to_dicts(), print_cells(own, REGISTER_FIELDS).to_dicts(), strict=True
+    ):
         tow = next(iter(rows_of_tow("tows", line["tow_id"])), None)
         files = [
             {"path": tow[f"{kind}_path"], "sha256": tow[f"{kind}_sha256"]}

@@ -86,7 +86,7 @@ def make_edition(
     Raises:
         MissingKnowledgeError: a decision is about a tow that is not in the warehouse.
     """
-    decisions = decided.tabulate_decisions(decisions_up_to(store, manifest.published_on))
+    decisions = decided.tabulate_decisions(read_decisions_up_to(store, manifest.published_on))
     today = read_tables_of_today(store)
     unknown = decisions.join(today["tows"], on="tow_id", how="anti")["tow_id"].to_list()
     if unknown:
@@ -258,7 +258,7 @@ def make_sheet_files(store: Store, edition: Edition) -> dict[str, bytes]:
         ),
     }
     if edition.method is not None:
-        decisions = decisions_up_to(store, edition.manifest.published_on)
+        decisions = read_decisions_up_to(store, edition.manifest.published_on)
         decided_then = json.dumps([d.model_dump(mode="json") for d in decisions], indent=1)
         contents[folder.METHOD] = write_method_text(edition.method).encode("utf-8")
         contents[folder.DECISIONS] = decided_then.encode("utf-8")
@@ -280,7 +280,7 @@ def make_edition_files(store: Store, edition: Edition) -> dict[str, bytes]:
     return contents
 
 
-def decisions_up_to(store: Store, day: dt.date) -> tuple[decided.Decision, ...]:
+def read_decisions_up_to(store: Store, day: dt.date) -> tuple[decided.Decision, ...]:
     """Return the decisions about tows taken up to a day."""
     decisions = decided.read_decisions(store.root / decided.FILE_NAME)
     return tuple(d for d in decisions if d.datum <= day)

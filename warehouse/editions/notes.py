@@ -12,7 +12,7 @@ from typing import Final
 import jinja2
 import polars as pl
 
-from pipeline.messages import DECIMALS, spoken
+from pipeline.messages import DECIMALS, write_in_language
 from pipeline.method.definition import COMPLETE
 from pipeline.register.printed import NOT_REBASED, REBASED
 from pipeline.register.register import NEWER_TOW_UNMEASURED
@@ -74,7 +74,7 @@ def _make_environment(language: str) -> jinja2.Environment:
         return format_date(value, "d MMMM y", locale=language)
 
     def cause(found: Row) -> str:
-        return str(spoken(name_cause(found["cause"], found["step"]), language))
+        return str(write_in_language(name_cause(found["cause"], found["step"]), language))
 
     environment.filters |= {
         "number": number,

@@ -131,7 +131,7 @@ def draft_edition(
     return make_edition(store, manifest, method, counting)
 
 
-def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
+def find_latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
     """Return the edition that counted last before a day; None if there is none."""
     known = [read_manifest(store.editions / name) for name in list_edition_names(store)]
     earlier = [m for m in known if (m.valid_from, m.published_on) <= (valid_from, published_on)]
@@ -157,7 +157,7 @@ class Published:
     to_look_at: list[Row]
 
 
-def published(store: Store, folder: Path) -> Published:
+def summarize_published(store: Store, folder: Path) -> Published:
     """Return the summary of an edition that was just published."""
     edition = read_edition(store, folder.name)
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
@@ -200,7 +200,7 @@ def _make_manifest(
         decision=terms.decision,
         simulated=bool(store.read("about_archive")["simulated"][0]),
         carried_from=carry,
-        previous=latest_before(store, terms.valid_from, terms.published_on),
+        previous=find_latest_before(store, terms.valid_from, terms.published_on),
         printed_in=printed_in,
         sources=dict(sources),
     )

@@ -95,7 +95,7 @@ SHEET_FIELDS: Final = REGISTER_FIELDS + (CODE_FIELD,)
 """The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
 
 
-def printed(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
+def print_cells(frame: pl.DataFrame, fields: Sequence[Field]) -> pl.DataFrame:
     """Return the cells of a sheet as they are printed, by header."""
     words = _write_words(frame)
     columns = []
@@ -113,7 +113,7 @@ def compute_verification_codes(frame: pl.DataFrame, method_hash: str | None) -> 
         method_hash: content hash of the method; None for a register as printed.
     """
     codes = []
-    lines = printed(frame, REGISTER_FIELDS).rows()
+    lines = print_cells(frame, REGISTER_FIELDS).rows()
     for inputs, line in zip(frame["inputs_sha256"], lines, strict=True):
         covered = [inputs, method_hash] + list(line)
         text = json.dumps(covered, ensure_ascii=False, separators=(",", ":"))
@@ -127,7 +127,7 @@ def encode_csv(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
     text = io.StringIO(newline="")
     writer = csv.writer(text, delimiter=";", lineterminator="\r\n")
     writer.writerow([field.header for field in fields])
-    writer.writerows(printed(frame, fields).rows())
+    writer.writerows(print_cells(frame, fields).rows())
     return text.getvalue().encode("utf-8-sig")
 
 

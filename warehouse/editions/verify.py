@@ -33,7 +33,7 @@ from warehouse.editions.integrity import (
     check_files,
     check_manifest,
     check_sources,
-    unchecked,
+    report_unchecked,
 )
 from warehouse.editions.making import make_again, make_sheet_files
 from warehouse.store.decisions import FILE_NAME as DECISIONS
@@ -143,7 +143,7 @@ def verify(store: Store, afresh: bool = True, head: str | None = None) -> Verifi
                     is_wrong = finding.wrong and not (finding.kind == "differs" and by_other_code)
                     findings.append(replace(finding, wrong=is_wrong))
     except HerijkError as error:
-        findings += [unchecked(name, error) for name in can_be_read]
+        findings += [report_unchecked(name, error) for name in can_be_read]
     is_wrong = any(finding.wrong for finding in findings)
     return Verification(checked, seal, findings, is_wrong, is_without_head=head is None)
 
@@ -185,7 +185,7 @@ def check_reproduction(
         message = say("it was made by other code: {}", str(error).splitlines()[0])
         return checked, [Finding(name, "differs", METHOD, message)]
     except READING_ERRORS as error:
-        return checked, [unchecked(name, error)]
+        return checked, [report_unchecked(name, error)]
     try:
         checked = replace(checked, lines=edition.register.height)
         again = make_again(store, edition)
@@ -197,9 +197,9 @@ def check_reproduction(
                 findings += _compare_table(edition, again, table)
             findings += _compare_sheets(store, edition)
         key = TABLES["register"].primary_key()
-        other = differences(edition.register, again.register, key).drop_nulls("there").height
+        other = find_differences(edition.register, again.register, key).drop_nulls("there").height
     except READING_ERRORS as error:
-        return checked, [unchecked(name, error)]
+        return checked, [report_unchecked(name, error)]
     return replace(checked, equal=edition.register.height - other), findings
 
 
@@ -218,7 +218,7 @@ def _compare_rows(edition: Edition, again: Edition, table: str) -> Iterator[Find
         n_same = len(find_same_tows(edition.tables, again.tables))
         if n_same < edition.tables["tows"].height:
             why = say("tows that went into it changed")
-    for row in differences(was, now, TABLES[table].primary_key()).iter_rows(named=True):
+    for row in find_differences(was, now, TABLES[table].primary_key()).iter_rows(named=True):
         changed = [
             f"{n} {_format_value(row[n])} > {_format_value(row[f'{n} now'])}"
             for n in row["columns"]
@@ -234,13 +234,13 @@ def _compare_rows(edition: Edition, again: Edition, table: str) -> Iterator[Find
 def _compare_table(edition: Edition, again: Edition, table: str) -> Iterator[Finding]:
     """Find the columns of a table that come out otherwise."""
     was, now = edition.tables.get(table, again.tables[table].clear()), again.tables[table]
-    rows = differences(
+    rows = find_differences(
         was.drop("causes", strict=False),
         now.drop("causes", strict=False),
         TABLES[table].primary_key(),
     )
     columns = set(rows["columns"].explode())
-    if table == CHANGES and differences(explode_causes(was), explode_causes(now), LINE).height:
+    if table == CHANGES and find_differences(explode_causes(was), explode_causes(now), LINE).height:
         columns.add("causes")  # a text with numbers, which are compared as such
     if columns:
         message = say("made again, it differs in {}", ", ".join(sorted(columns)))
@@ -261,7 +261,7 @@ def _compare_sheets(store: Store, edition: Edition) -> Iterator[Finding]:
             yield Finding(name, "differs", file, message)
 
 
-def differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.DataFrame:
+def find_differences(was: pl.DataFrame, now: pl.DataFrame, key: Sequence[str]) -> pl.DataFrame:
     """Return rows that differ by more than `SAME_NUMBER`; of equal keys the first pair up.
 
     Returns:

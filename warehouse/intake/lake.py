@@ -24,7 +24,7 @@ from pipeline.errors import DefectiveInputError, UnavailableError
 from pipeline.tables.frames import make_frame
 from pipeline.tables.lake import SeasonIndex
 from pipeline.tables.row import Row
-from warehouse.archive import Fault, FileHashes, SeasonProfile, fault_from
+from warehouse.archive import Fault, FileHashes, SeasonProfile, make_fault
 from warehouse.intake.reading import read_samples
 from warehouse.store.code import ADDING, READING, hash_code
 from warehouse.store.store import (
@@ -144,7 +144,7 @@ def _bring_in_tow(
             write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:
         _check_unchanged(root, tow, hashes)
-        fault = fault_from(error, tow["samples_path"], tow["tow_id"])
+        fault = make_fault(error, tow["samples_path"], tow["tow_id"])
     except BaseException as error:
         if not is_unforeseen(error):
             raise

@@ -68,7 +68,9 @@ def line_changes(views: Views, to_edition: str | None = None) -> pl.DataFrame:
     return _add_names(views, changes)
 
 
-def compared(views: Views, old: str, new: str, valid_from: dt.date | None = None) -> pl.DataFrame:
+def compare_editions(
+    views: Views, old: str, new: str, valid_from: dt.date | None = None
+) -> pl.DataFrame:
     """Compare any two editions or drafts as on publication; columns as of `line_changes`.
 
     Args:
@@ -146,7 +148,7 @@ def add_peers(lines: pl.DataFrame) -> pl.DataFrame:
     return added.with_columns(pl.col("peers").fill_null(pl.lit([], pl.List(pl.Float64))))
 
 
-def answers(views: Views, edition: str) -> pl.DataFrame:
+def read_line_answers(views: Views, edition: str) -> pl.DataFrame:
     """Return every line of an edition with its changes, next tow, best estimate and prediction.
 
     What stands behind the lines comes from the edition's own folder, which holds no weights and no
@@ -169,7 +171,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     """
     changes = line_changes(views, edition)
     lines = views.register().filter(edition=edition)
-    compared = changes.drop("name", "boat_type", "to_edition", "new_log_known")
+    changed_lines = changes.drop("name", "boat_type", "to_edition", "new_log_known")
     known = log_known(views).rename({"log_known": "new_log_known"})
     due = views.table("due_list").select("method", pl.col(LINE), "tow_speed_m_s", "speed_reason")
     tables = _choose_tables(views, edition)
@@ -186,7 +188,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         "disagrees", predicted_speed_m_s="standard_speed_m_s", cw_there_kg_m="cw_kg_m",
     )  # fmt: skip
     joined = (
-        lines.join(compared, on=LINE, how="left", maintain_order="left")
+        lines.join(changed_lines, on=LINE, how="left", maintain_order="left")
         .join(known, on="edition", how="left", maintain_order="left")
         .join(tows, on="tow_id", how="left", maintain_order="left")
         .join(old_days, on=("from_edition",) + LINE, how="left", maintain_order="left")
@@ -271,7 +273,7 @@ def estimate_race_chances(views: Views, old: str, new: str) -> dict[tuple[str, s
     Returns:
         By race with its day, and class; None where the new register has no ensemble.
     """
-    winners, _ = replayed(views, old, new)
+    winners, _ = compare_races(views, old, new)
     chances = {}
     for row in winners.iter_rows(named=True):
         race = f"{row['race']} {row['race_date']}"
@@ -279,7 +281,7 @@ def estimate_race_chances(views: Views, old: str, new: str) -> dict[tuple[str, s
     return chances
 
 
-def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int, int]]:
+def compare_races(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int, int]]:
     """Return who wins the races under two editions, and how many results change place.
 
     Returns:

@@ -72,7 +72,7 @@ class History:
             crew_classes=read_crew_classes(store),
         )
 
-    def under(self, method: Method) -> "Draft":
+    def recompute_under(self, method: Method) -> "Draft":
         """Recompute all tows under a method, without bands, and draft its register.
 
         Raises:

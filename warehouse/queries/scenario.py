@@ -62,13 +62,13 @@ class Scenario:
 
     def season_change(self) -> pl.DataFrame:
         """Return median and range per season of Cw after over Cw before, of all tows."""
-        curves = self.both(lambda draft: draft.made.curves)
+        curves = self.concat_both(lambda draft: draft.made.curves)
         return season_changes(curves, self.before.method).sort("season")
 
     def boat_figure(self, fsn_no: str) -> pl.DataFrame:
         """Return what `prepare_curve_figure` draws of a boat's curves, at 13 speeds."""
         curves = self.boat_curves(fsn_no).drop_nulls("cw_kg_m")
-        runs = self.both(lambda draft: draft.made.run_points)
+        runs = self.concat_both(lambda draft: draft.made.run_points)
         return pl.concat(
             prepare_curve_figure(_draw_curves(curves), runs, curves).values(), how="diagonal"
         )
@@ -76,12 +76,12 @@ class Scenario:
     def boat_curves(self, fsn_no: str) -> pl.DataFrame:
         """Return every curve of a boat under both methods, with the `interval` of the method."""
         intervals = {d.method.name: d.method.interval for d in (self.before, self.after)}
-        mine = self.both(lambda draft: draft.made.curves).filter(fsn_no=fsn_no)
+        mine = self.concat_both(lambda draft: draft.made.curves).filter(fsn_no=fsn_no)
         return mine.sort("season", "tow_id", maintain_order=True).with_columns(
             interval=pl.col("method").replace_strict(intervals, return_dtype=pl.String)
         )
 
-    def both(self, of: Callable[[Draft], pl.DataFrame]) -> pl.DataFrame:
+    def concat_both(self, of: Callable[[Draft], pl.DataFrame]) -> pl.DataFrame:
         """Return the rows of a table of both drafts."""
         return pl.concat([of(self.before), of(self.after)])
 

@@ -82,7 +82,7 @@ class KnownMethods:
             )
         return read_method_file(self.folder / f"{name}{SUFFIX}")
 
-    def named(self, name_or_file: str) -> Method:
+    def find(self, name_or_file: str) -> Method:
         """Read a method by its name, or from a file anywhere.
 
         Raises:
@@ -103,7 +103,7 @@ class KnownMethods:
         Raises:
             HerijkError: it has an error, or the name of a method that ships.
         """
-        method = self.named(name_or_file)
+        method = self.find(name_or_file)
         if method.name == name_or_file:
             return method.name
         if method.name in list_shipped_methods():

@@ -109,7 +109,7 @@ class Store:
         """Hash of what is in a table: equal for equal tables, whatever they were made from."""
         return read_file_metadata(self.table_path(table), CONTENTS_KEY)
 
-    def failed(self, table: str) -> str | None:
+    def get_failure(self, table: str) -> str | None:
         """Return the traceback of a table whose rows are missing because our code failed."""
         return read_file_metadata(self.table_path(table), FAILED_KEY)
 

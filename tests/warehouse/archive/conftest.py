@@ -14,9 +14,9 @@ from warehouse.archive import (
     ArchiveIndex,
     Fault,
     FileHashes,
-    fault_from,
     index_archive,
     judge_samples,
+    make_fault,
     read_tow_samples,
 )
 from warehouse.archive.profile import Profiles, read_profiles
@@ -90,7 +90,7 @@ class Archive:
                 samples, place, defects = read_tow_samples(self.root, tow, profile)
                 judged = judge_samples(samples, place, tow, index.runs, defects)
             except DefectiveInputError as error:
-                faults.append(fault_from(error, tow["samples_path"], tow["tow_id"]))
+                faults.append(make_fault(error, tow["samples_path"], tow["tow_id"]))
             else:
                 good[tow["tow_id"]] = judged.samples
                 faults += judged.faults

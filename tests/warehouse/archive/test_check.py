@@ -68,7 +68,7 @@ def test_a_misspelt_optional_header_is_never_ignored(archive: Archive, old: str)
 def test_what_libraries_say_is_made_printable() -> None:
     said = say("broken: {error}, {cell}.", error=ValueError("a\nb\x0e"), cell="\x1b[31mred")
     assert said == "broken: a b?, ?[31mred."
-    assert said.spoken("nl").isprintable()
+    assert said.write_in("nl").isprintable()
 
 
 def test_an_empty_archive_to_begin_with(tmp_path: Path) -> None:
