@@ -166,13 +166,13 @@ class Document:
 
     def show_when(self, values: Mapping[str, Sequence[str]]) -> Markup:
         """Return attributes of a part that is shown where selectors say one of these values."""
-        attributes = [f' data-{name}="{escape("|".join(own))}"' for name, own in values.items()]
-        is_hidden = any(self._is_unchosen(name, own) for name, own in values.items())
-        return Markup("".join(attributes) + " hidden" * is_hidden)  # noqa: S704 - was escaped
-
-    def _is_unchosen(self, name: str, values: Sequence[str]) -> bool:
-        choice = self.chosen.get(name)
-        return bool(choice) and choice not in values
+        attributes, hidden = "", ""
+        for name, own in values.items():
+            attributes += f' data-{name}="{escape("|".join(own))}"'
+            choice = self.chosen.get(name)
+            if choice and choice not in own:
+                hidden = " hidden"
+        return Markup(attributes + hidden)  # noqa: S704 - was escaped
 
     # -- Charts -----------------------------------------------------------------------------------
 

@@ -15,7 +15,7 @@ import typst
 from dashboards import fonts, words
 from dashboards.document import Document
 from dashboards.language import Language
-from dashboards.reading import Block, read_blocks
+from dashboards.reading import read_blocks
 
 FOLDER: Final = Path(__file__).parent
 EPOCH: Final = 0
@@ -56,22 +56,18 @@ def make_pdf(
     spoken = Language(language, about)
     document = Document(spoken)
     mark = spoken.say(words.SIMULATED) if simulated else ""
+    blocks = []
+    for data in pages:
+        html = document.render(template, **data)
+        blocks.append(list(map(asdict, read_blocks(html, folded=True))))
     content = {
         "title": title,
         "language": language,
         "simulated": mark,
         "footing": footing or title,
-        "pages": [
-            [_pack(block) for block in read_blocks(document.render(template, **data), folded=True)]
-            for data in pages
-        ],
+        "pages": blocks,
     }
     inputs = {"content": json.dumps(content, ensure_ascii=False, default=str)}
     made = _get_compiler().compile(format="pdf", sys_inputs=inputs, timestamp=EPOCH)
     assert isinstance(made, bytes), "a PDF is one file"  # noqa: S101 - Typst's type is wider
     return made
-
-
-def _pack(block: Block) -> dict[str, Any]:
-    """Return a block as plain data."""
-    return asdict(block)

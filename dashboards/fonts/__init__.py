@@ -24,11 +24,9 @@ _FACE: Final = (
 @cache
 def style_sheet() -> str:
     """Return a style sheet that brings the font along."""
-    return "".join(
-        _FACE.format(family=FAMILY, weight=weight, data=_encode_font(f"OpenSans-{name}.woff2"))
-        for name, weight in WEIGHTS.items()
-    )
-
-
-def _encode_font(name: str) -> str:
-    return base64.b64encode((FOLDER / name).read_bytes()).decode("ascii")
+    faces = []
+    for name, weight in WEIGHTS.items():
+        font = (FOLDER / f"OpenSans-{name}.woff2").read_bytes()
+        data = base64.b64encode(font).decode("ascii")
+        faces.append(_FACE.format(family=FAMILY, weight=weight, data=data))
+    return "".join(faces)

@@ -284,7 +284,8 @@ def _tow(
         return stream(settings.seed, Subject.TOW, slot.season, slot.number, component)
 
     weight_kg = float(round(boat.weight_kg * condition.weight))
-    rowers = _rowers(boat, defects, draw(Component.EMPTY_THWART))
+    has_free_thwart = draw(Component.EMPTY_THWART).random() < defects.empty_thwart_share
+    rowers = boat.boat_type.rowers - (ROWERS_PER_THWART if has_free_thwart else 0)
     on_board_kg = crew_kg(slot.crew_class, rowers)
     hull = load_hull(boat, on_board_kg, weight_kg, condition.resistance)
     day = (slot.number - 1) // settings.tows_a_day
@@ -292,7 +293,10 @@ def _tow(
     temperature_c = round(float(day_rng.uniform(*defects.water_temperature_c)), 1)
     listed = draw(Component.TEMPERATURE).random() >= defects.temperature_missing_share
     declared = _choose_declared_speed(settings, boat, slot.crew_class, rowers)
-    declared = round(declared * _slowness(defects, draw(Component.SLOW)), 2)
+    slow_rng = draw(Component.SLOW)
+    is_slow = slow_rng.random() < defects.slow_share
+    slow_ratio = float(slow_rng.uniform(*defects.slow_ratio))
+    declared = round(declared * (slow_ratio if is_slow else 1.0), 2)
 
     def cw(at_c: float, salinity_g_kg: float = 0.0) -> float:
         speed_m_s = np.array(declared)
@@ -353,16 +357,6 @@ def _log_change(settings: WorldSettings, season: int, day: int) -> float:
     place = _place_in_season(settings, day)
     replaced = place + 0.5 > replaced_at
     return float(np.exp(defects.log_trend * place + defects.log_replaced * replaced))
-
-
-def _rowers(boat: Boat, defects: Defects, rng: np.random.Generator) -> int:
-    left_out = ROWERS_PER_THWART if rng.random() < defects.empty_thwart_share else 0
-    return boat.boat_type.rowers - left_out
-
-
-def _slowness(defects: Defects, rng: np.random.Generator) -> float:
-    slow, ratio = rng.random(), rng.uniform(*defects.slow_ratio)
-    return float(ratio) if slow < defects.slow_share else 1.0
 
 
 def _freeboards_m(
