@@ -64,6 +64,7 @@ def test_every_page_is_there(site, built, results):
     assert PARTS in listed
 
 
+@pytest.mark.more
 def test_without_a_proposal_no_page_leads_to_its_parts(bench):
     bench.rebuild(METHODS[:1])
     with Views(bench.store) as views:
