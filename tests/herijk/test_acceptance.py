@@ -10,7 +10,15 @@ from dashboards.page import render_page
 from dashboards.queries.results import Results
 from dashboards.site import list_pages
 from tests.conftest import METHODS
-from tests.herijk.test_assess import METHOD, RUN, edit_samples, hashes, scale, sound_tow
+from tests.herijk.test_assess import (
+    METHOD,
+    RUN,
+    change_row,
+    edit_samples,
+    hashes,
+    scale,
+    sound_tow,
+)
 from warehouse.queries.change_report import change_report
 from warehouse.queries.views import Views
 
@@ -24,19 +32,6 @@ def read_list(bench):
     text = (bench.archive / LIST).read_text("utf-8")
     delimiter = max(";,\t|", key=text.splitlines()[0].count)
     return list(csv.DictReader(text.splitlines(), delimiter=delimiter))
-
-
-def change_cell(bench, tow_id, column, cell):
-    """Correct a cell of the tow list of 2014."""
-    (path,) = (bench.archive / "sleeplijsten").glob("sleeplijst_2014.*")
-    lines = path.read_bytes().decode("utf-8-sig").splitlines()
-    delimiter = max(";,\t|", key=lines[0].count)
-    rows = list(csv.reader(lines, delimiter=delimiter))
-    names = [name.partition(" [")[0] for name in rows[0]]
-    (mine,) = [row for row in rows if row[names.index("sleep_id")] == tow_id]
-    mine[names.index(column)] = cell
-    with path.open("w", encoding="utf-8", newline="") as file:
-        csv.writer(file, delimiter=delimiter).writerows(rows)
 
 
 def render_quality(bench):
@@ -94,7 +89,7 @@ def test_a_committee_accepts_a_tow_and_a_later_check_doubts_it(bench, sound_tow,
     assert NAME in out.partition("Lineage")[2]
 
     # Later the crew turns out to have been weighed with its coats: a check marks the tow.
-    change_cell(bench, sound_tow, "bemanning", str(125 * tow["rowers"]))
+    change_row(bench, sound_tow, {"bemanning [kg]": str(125 * tow["rowers"])})
     bench.rebuild(METHODS)
     found = bench.table("acceptances").filter(tow_id=sound_tow, method=METHOD)
     assert found["doubted_by"].to_list() == [["crew_weight"]]

@@ -1,5 +1,6 @@
 """A tow on the quay: in seconds, without a trace, and what the next rebuild says of it."""
 
+import csv
 import shutil
 
 import numpy as np
@@ -105,24 +106,28 @@ def numbered_from_fast_to_slow(samples):
     )
 
 
-def add_to_list(bench, tow_id, **cells):
-    """Write cells for one tow below new headings of the tow list of 2014."""
+def change_row(bench, tow_id, cells):
+    """Write cells of a tow in the tow list of 2014, by their headings, which may be new."""
     (path,) = (bench.archive / "sleeplijsten").glob("sleeplijst_2014.*")
     lines = path.read_bytes().decode("utf-8-sig").splitlines()
     delimiter = max(";,\t|", key=lines[0].count)
-    lines[0] += "".join(f"{delimiter}{header}" for header in cells)
-    for number, line in enumerate(lines[1:], 1):
-        own = cells.values() if tow_id in line.split(delimiter) else [""] * len(cells)
-        lines[number] += "".join(f"{delimiter}{cell}" for cell in own)
-    path.write_text("\n".join(lines), encoding="utf-8")
+    header, *rows = csv.reader(lines, delimiter=delimiter)
+    new = [name for name in cells if name not in header]
+    header += new
+    for row in rows:
+        row.extend([""] * len(new))
+    (mine,) = [row for row in rows if row[header.index("sleep_id")] == tow_id]
+    for name, cell in cells.items():
+        mine[header.index(name)] = cell
+    with path.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, delimiter=delimiter).writerows([header, *rows])
 
 
 def test_a_tow_in_a_shallow_estuary(bench, sound_tow):
     """Salt is taken off, so that the number is that in fresh water; the depth is looked at."""
     method = read_shipped_method("rebased")
     in_fresh = assess(bench.store, bench.archive, sound_tow, method)
-    cells = {"Zoutgehalte [‰]": "34", "waterdiepte [m]": "1.5"}
-    add_to_list(bench, sound_tow, **cells)
+    change_row(bench, sound_tow, {"Zoutgehalte [‰]": "34", "waterdiepte [m]": "1.5"})
     in_salt = assess(bench.store, bench.archive, sound_tow, method)
     assert 0.985 < in_salt.curve["cw_kg_m"] / in_fresh.curve["cw_kg_m"] < 0.992
     assert [row["check"] for row in in_salt.checks] == ["shallow_water"]

@@ -24,7 +24,11 @@ def history(built):
 
 @pytest.fixture(scope="module")
 def scenario(history):
-    return Scenario(*(history.recompute_under(read_shipped_method(name)) for name in METHODS))
+    before, after = METHODS
+    return Scenario(
+        history.recompute_under(read_shipped_method(before)),
+        history.recompute_under(read_shipped_method(after)),
+    )
 
 
 def test_a_draft_is_the_register_of_the_warehouse(scenario, built):
