@@ -26,7 +26,12 @@ def edition_page(edition: str) -> str:
 
 def race_path(race: str, day: dt.date) -> str:
     """Return the page of a race."""
-    return _path("races", f"{race}-{day}")
+    return f"races/{make_race_key(race, day)}.html"
+
+
+def make_race_key(race: str, day: dt.date) -> str:
+    """Return how addresses name a race of a day."""
+    return make_key(f"{race}-{day}")
 
 
 def boat_sheet(fsn_no: str) -> str:

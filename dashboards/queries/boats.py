@@ -14,7 +14,7 @@ from pipeline.method.options import find_basis
 from pipeline.method.variant import Difference, list_differences
 from pipeline.register.register import name_draft
 from pipeline.tables.display import STEP_CHANGE
-from pipeline.tables.row import Row, pick_columns
+from pipeline.tables.row import Row, get_key
 from warehouse.queries.answers import (
     add_peers,
     list_season_faults,
@@ -178,7 +178,7 @@ def read_answers(results: Results, edition: str) -> dict[str, list[Row]]:
     decided_steps = find_decided_steps(find_changed_options(results, previous, edition))
     by_boat: dict[str, list[Row]] = {}
     for line in lines.to_dicts():
-        own = races_by_crew.get(tuple(pick_columns(line, CREW).values()), races.head(0)).to_dicts()
+        own = races_by_crew.get(get_key(line, CREW), races.head(0)).to_dicts()
         of_season = faults.get((line["method"], line["season"]), [])
         answer = describe_answer(line, own, of_season)
         answer["decided_steps"] = decided_steps
@@ -204,7 +204,7 @@ def find_changed_options(results: Results, old: str | None, new: str) -> list[Di
     of_editions = dict(results.views.table("editions").select("edition", "method").rows())
     old_method = old.removeprefix(DRAFT) if old.startswith(DRAFT) else of_editions.get(old)
     before = known.get(old_method or results.methods[0])
-    return list(list_differences(known.get(new.removeprefix(DRAFT)), before))
+    return list_differences(known.get(new.removeprefix(DRAFT)), before)
 
 
 def find_decided_steps(changed: Sequence[Difference]) -> list[str]:

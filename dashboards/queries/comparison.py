@@ -42,7 +42,7 @@ def compare(
     old_side, new_side = sides
     before = old_side.method if isinstance(old_side, Edition) else old_side
     after = new_side.method if isinstance(new_side, Edition) else new_side
-    options = [] if before is None or after is None else list(list_differences(after, before))
+    options = [] if before is None or after is None else list_differences(after, before)
     data: Data = {"old": old, "new": new, "options": options, "effect": None}
     if not {old, new} <= {*published} and store.read_fingerprint("tows") is None:
         return data

@@ -28,7 +28,7 @@ def read_method(results: Results, name: str) -> Data:
     first = known.get(results.views.table("methods")["method"][0])
     shown = known.get(name)
     ladder = results.views.table("correction_steps").filter(from_method=first.name, to_method=name)
-    changed = list(list_differences(shown, first))
+    changed = list_differences(shown, first)
     return {
         "method_name": name,
         "others": {
@@ -176,7 +176,7 @@ def describe_method(store_methods: KnownMethods, name_or_file: str, language: st
     """
     shown = store_methods.find(name_or_file)
     if shown.extends:
-        options = list(list_differences(shown, store_methods.get(shown.extends)))
+        options = list_differences(shown, store_methods.get(shown.extends))
     else:
         options = [
             Difference(step, option, block.first, block.last, (), value)

@@ -7,7 +7,7 @@ from typing import Any, Final, TypeAlias
 
 import polars as pl
 
-from dashboards.addresses import make_key
+from dashboards.addresses import make_race_key
 from pipeline.register.register import choose_default_method, list_shown_methods
 from pipeline.studies.switches import find_switches
 from pipeline.tables.row import Row
@@ -90,7 +90,7 @@ class Results:
         is_last = pl.col("race_date") == pl.col("race_date").max().over("race")
         last = races.filter(is_last).unique().sort("race", "race_date", "fsn_no")
         key = pl.struct("race", "race_date").map_elements(
-            lambda one: make_key(f"{one['race']}-{one['race_date']}"), pl.String
+            lambda one: make_race_key(one["race"], one["race_date"]), pl.String
         )
         return last.with_columns(key=key)
 

@@ -11,7 +11,7 @@ import polars as pl
 
 from pipeline.choice import SAME_SHARE
 from pipeline.register.register import LINE, MEASURED
-from pipeline.tables.row import Row, pick_columns
+from pipeline.tables.row import Row, get_key
 
 NO_FACTOR: Final = SAME_SHARE
 """A factor this near to 1 is rounding and is not listed as a cause."""
@@ -71,7 +71,7 @@ def name_grounds(
     rebased_lines = set() if rebased is None else set(rebased.select(LINE).rows())
     named = []
     for pair in pairs.iter_rows(named=True):
-        line = tuple(pick_columns(pair, LINE).values())
+        line = get_key(pair, LINE)
         is_print = pair["basis"] != MEASURED or pair["basis_new"] != MEASURED
         is_other_tow = (
             pair["tow_date" if is_print else "tow_id"]

@@ -19,7 +19,7 @@ from pipeline.races.power import find_line_curves, speed_at_power
 from pipeline.races.race import power_per_rower_w
 from pipeline.register.causes import NO_FACTOR
 from pipeline.register.register import LINE
-from pipeline.tables.row import Row, pick_columns
+from pipeline.tables.row import Row, get_key
 
 SAME_RATIO: Final = 5e-4
 """A curve that differs by at most 0.05 % anywhere between 85 and 115 % of the declared speed is the
@@ -185,7 +185,7 @@ def _explain(
     explained = []
     for pair, ratio in zip(pairs.iter_rows(named=True), ratios.tolist(), strict=True):
         causes: list[Row] = []
-        line = tuple(pick_columns(pair, LINE).values())
+        line = get_key(pair, LINE)
         if math.isfinite(ratio):
             for part in parts_of.get(line, ()):
                 known = {name: value for name, value in part.items() if value is not None}

@@ -89,11 +89,15 @@ def replay(
     low, high = VALID_RATIO[0] * declared, VALID_RATIO[1] * declared
     beyond = (speed < low) | (speed > high)
     without = rowed["without"].to_numpy()
-    corrected_s = _correct_times(rowed, through_water, crew_classes)
+    timed = crew_classes.filter(handicap=TIME_ON_TIME)["crew_class"].to_list()
+    is_timed = pl.col("crew_class").is_in(timed)
+    corrected_s = np.full(rowed.height, np.nan)
+    if timed:
+        corrected_s = _correct_times(rowed, through_water, crew_classes, is_timed)
     remark = np.select([~has_line, ~sound, beyond], [without, ABOVE_B, BEYOND_CURVE], "")
     by_power = pl.col("power_w").rank("min", descending=True).over(CLASSIFICATION)
     by_time = pl.col("corrected_time_s").rank("min").over(CLASSIFICATION)
-    rank = pl.when(_is_timed(crew_classes)).then(by_time).otherwise(by_power).cast(pl.Int32)
+    rank = pl.when(is_timed).then(by_time).otherwise(by_power).cast(pl.Int32)
     return (
         rowed.drop("without", "tow_date", "valid_until", "declared_speed_m_s")
         .rename({"cw_kg_m": "declared_cw_kg_m"})
@@ -277,14 +281,11 @@ def _estimate_chances(
     )
 
 
-def _is_timed(crew_classes: pl.DataFrame) -> pl.Expr:
-    """Return whether the class of a result races on corrected time."""
-    timed = crew_classes.filter(handicap=TIME_ON_TIME)["crew_class"].to_list()
-    return pl.col("crew_class").is_in(timed)
-
-
 def _correct_times(
-    results: pl.DataFrame, through_water_m: pl.Series, crew_classes: pl.DataFrame
+    results: pl.DataFrame,
+    through_water_m: pl.Series,
+    crew_classes: pl.DataFrame,
+    is_timed: pl.Expr,
 ) -> FloatArray:
     """Return race times corrected by the speed of each boat [s]; NaN where power decides.
 
@@ -306,7 +307,7 @@ def _correct_times(
         seconds=seconds, speed=pl.Series(np.where(has_line, speed, np.nan)).fill_nan(None)
     )
     allowance = pl.col("speed") / pl.col("speed").max().over(CLASSIFICATION)
-    corrected = pl.when(_is_timed(crew_classes)).then(pl.col("seconds") * allowance)
+    corrected = pl.when(is_timed).then(pl.col("seconds") * allowance)
     return timed.select(corrected.cast(pl.Float64)).to_series().to_numpy()
 
 

@@ -164,7 +164,7 @@ def compose_line(root: Path, acceptance: Acceptance) -> NewLine:
     if not lists:
         path = f"{profiles.find_place(ACCEPTANCES)}.csv"
         target, before = root / path, None
-        layout = _choose_layout(files, acceptance.towed_on.year, profiles)
+        layout = _choose_layout(files, acceptance.towed_on.year, profiles, columns)
     else:
         path, target = lists[0].path, lists[0].full_path.resolve()
         if not lists[0].inside:
@@ -198,7 +198,9 @@ def compose_line(root: Path, acceptance: Acceptance) -> NewLine:
     return NewLine(path, target, layout.header, line, before, after)
 
 
-def _choose_layout(files: Sequence[ArchiveFile], season: int, profiles: Profiles) -> _Layout:
+def _choose_layout(
+    files: Sequence[ArchiveFile], season: int, profiles: Profiles, columns: Sequence[Column]
+) -> _Layout:
     """Return the layout of a new list: as the tow list of the season is written, if it is text."""
     delimiter, line_end = ";", "\n"
     for file in files:
@@ -207,7 +209,7 @@ def _choose_layout(files: Sequence[ArchiveFile], season: int, profiles: Profiles
             content = read_bytes(file.full_path, LIST_MAX_BYTES)
             found = _find_layout(content, profiles.rename_columns(TOWS.columns))
             delimiter, line_end = found.delimiter, found.line_end
-    header = delimiter.join(column.named for column in profiles.rename_columns(ACCEPTANCES.columns))
+    header = delimiter.join(column.named for column in columns)
     return _Layout(header, 0, delimiter, "utf-8", line_end)
 
 

@@ -111,8 +111,8 @@ def write_templates(root: Path, profile: Path | None = None) -> None:
         (root / folder).mkdir(parents=True, exist_ok=True)
     (root / "LEESMIJ.md").write_text(README, encoding="utf-8")
     (root / PROFILE_FILE).write_text(PROFILE, encoding="utf-8")
-    _write_list(root / "sloepregister/sloependata.xlsx", BOATS, EXAMPLE_BOAT)
-    _write_list(root / "sleeplijsten/sleeplijst_2025.xlsx", TOWS, EXAMPLE_TOW)
+    _write_list(root / "sloepregister/sloependata.xlsx", BOATS, EXAMPLE_BOAT, Profiles())
+    _write_list(root / "sleeplijsten/sleeplijst_2025.xlsx", TOWS, EXAMPLE_TOW, Profiles())
 
 
 def _write_own_templates(root: Path, profile: Path) -> None:
@@ -134,22 +134,19 @@ def _write_own_templates(root: Path, profile: Path) -> None:
     (root / PROFILE_FILE).write_text(text, encoding="utf-8")
 
 
-def _write_list(
-    path: Path, kind: ListKind, example: dict[str, object], profiles: Profiles | None = None
-) -> None:
+def _write_list(path: Path, kind: ListKind, example: dict[str, object], profiles: Profiles) -> None:
     """Write a spreadsheet with a header, an example, and a check on each column with limits."""
-    known = profiles or Profiles()
     import xlsxwriter  # type: ignore[import-untyped]  # noqa: PLC0415 - only here
 
     with xlsxwriter.Workbook(str(path)) as book:
         sheet = book.add_worksheet("lijst")
         bold = book.add_format({"bold": True, "bottom": 1})
         sheet.freeze_panes(1, 0)
-        for place, column in enumerate(known.rename_columns(kind.columns)):
+        for place, column in enumerate(profiles.rename_columns(kind.columns)):
             sheet.set_column(place, place, max(10, len(column.named) + 2))
             sheet.write(0, place, column.named, bold)
             sheet.write(1, place, example.get(column.key, ""))
-            rule = _rule(column, kind.table, known)
+            rule = _rule(column, kind.table, profiles)
             if rule is not None:
                 sheet.data_validation(1, place, MOST_ROWS, place, rule)
 
